@@ -1,0 +1,1 @@
+"""Bodies in the air: will this maneuver come out right by itself?"""

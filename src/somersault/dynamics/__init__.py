@@ -1,0 +1,6 @@
+"""Equations of motion: derived symbolically from a model, compiled, printed."""
+
+from somersault.dynamics._equations import Equations, Expression
+from somersault.dynamics._kernel import Kernel
+
+__all__ = ["Equations", "Expression", "Kernel"]

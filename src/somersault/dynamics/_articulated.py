@@ -1,0 +1,272 @@
+"""Forward dynamics by the articulated-body algorithm (Featherstone 1983), over symbols.
+
+Each link's articulated inertia is kept in 3 × 3 blocks about its frame's origin,
+
+    [moment]   [ I  H ] [α]   [n]
+    [force ] = [ Hᵀ M ] [a] + [f],
+
+α its angular acceleration and a the acceleration of its origin. A hinge about a coordinate
+axis makes that axis's row of I and H exactly zero once it has been projected out, which is
+written as zero and never computed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from somersault.dynamics._motion import Placed, Rates, joint_vector, place, rates
+from somersault.dynamics._tree import Link, Tree
+from somersault.dynamics._vector import (
+    Mat,
+    Scalar,
+    Vec,
+    add,
+    cross,
+    dot,
+    madd,
+    matmul,
+    matvec,
+    mul,
+    scale,
+    solve_symmetric,
+    steiner,
+    sub,
+    symmetric,
+    tilde,
+    transpose,
+    vadd,
+    vsub,
+)
+
+
+@dataclass
+class _Articulated:
+    """I, H, M and the bias n, f of one link and all that it carries."""
+
+    moment: Mat
+    coupling: Mat
+    mass: Mat
+    n: Vec
+    f: Vec
+
+
+@dataclass(frozen=True)
+class _Gain:
+    """A joint's own acceleration: bias − rows · (α, a)."""
+
+    bias: Vec
+    alpha_rows: Mat
+    a_rows: Mat
+
+
+def forward_dynamics(
+    tree: Tree,
+    q: Sequence[Scalar],
+    omega: Vec,
+    speeds: Sequence[Scalar],
+    torques: Sequence[Scalar],
+    gravity: Vec,
+) -> tuple[Vec, Vec, list[Scalar]]:
+    """Angular acceleration of a free base, acceleration of its centre of mass, of the joints.
+
+    All in the base's axes (a fixed base: the ground's, and the first two are zero). `torques`
+    act at the joints, `gravity` (m/s²) on everything.
+    """
+    placed = place(tree, q)
+    moving = rates(placed, omega, speeds)
+    bodies = [_rigid(link, motion) for link, motion in zip(tree.links, moving, strict=True)]
+    gains: list[_Gain | None] = [None] * len(bodies)
+    for index in range(len(bodies) - 1, -1, -1):
+        link = tree.links[index]
+        if link.joint is None:
+            continue
+        gains[index] = _project(link, bodies[index], moving[index], list(torques[link.speeds]))
+        if link.parent >= 0:
+            _hang(bodies[link.parent], placed[index], bodies[index])
+    return _accelerations(tree, placed, moving, bodies, gains, gravity)
+
+
+def _rigid(link: Link, motion: Rates) -> _Articulated:
+    """A lone link: its inertia about its origin, and the bias of its own turning."""
+    first = scale(link.mass, link.com)
+    about_origin = madd(link.inertia, steiner(link.mass, link.com))
+    return _Articulated(
+        about_origin,
+        tilde(first),
+        [[link.mass if i == j else 0.0 for j in range(3)] for i in range(3)],
+        cross(motion.omega, matvec(about_origin, motion.omega)),
+        cross(motion.omega, cross(motion.omega, first)),
+    )
+
+
+def _project(link: Link, body: _Articulated, motion: Rates, torques: list[Scalar]) -> _Gain:
+    """Take the joint's own freedom out of `body`; what is left is what its parent feels."""
+    joint = link.joint
+    assert joint is not None
+    if joint.kind == "ball":
+        gain = _project_ball(joint.armature, body, torques)
+    else:
+        gain = _project_axis(link, body, torques[0])
+    body.n = vadd(body.n, matvec(body.moment, motion.spin), matvec(body.coupling, motion.pull))
+    body.f = vadd(
+        body.f, matvec(transpose(body.coupling), motion.spin), matvec(body.mass, motion.pull)
+    )
+    return gain
+
+
+def _project_axis(link: Link, body: _Articulated, torque: Scalar) -> _Gain:
+    joint, k = link.joint, link.axis
+    assert joint is not None
+    hinge = joint.kind == "hinge"
+    if hinge:  # the columns that the joint's acceleration multiplies
+        to_moment, to_force = list(body.moment[k]), list(body.coupling[k])
+        bias, inertia = body.n[k], body.moment[k][k]
+    else:
+        to_moment, to_force = [row[k] for row in body.coupling], list(body.mass[k])
+        bias, inertia = body.f[k], body.mass[k][k]
+    inverse = 1.0 / add(inertia, joint.armature)
+    effort = mul(inverse, sub(mul(link.sign, torque), bias))
+    moment_gain, force_gain = scale(inverse, to_moment), scale(inverse, to_force)
+    exact = k if joint.armature == 0.0 else None  # rows that vanish identically
+    body.moment = _reduced(body.moment, to_moment, moment_gain, exact if hinge else None)
+    body.mass = _reduced(body.mass, to_force, force_gain, None if hinge else exact)
+    body.coupling = [
+        [
+            0.0
+            if exact is not None and (i if hinge else j) == exact
+            else sub(body.coupling[i][j], mul(moment_gain[i], to_force[j]))
+            for j in range(3)
+        ]
+        for i in range(3)
+    ]
+    body.n = vadd(body.n, scale(effort, to_moment))
+    body.f = vadd(body.f, scale(effort, to_force))
+    if exact is not None:  # what passes the joint's own axis is the applied torque (force)
+        passed = body.n if hinge else body.f
+        passed[k] = mul(link.sign, torque)
+    return _Gain(
+        [mul(link.sign, effort)],
+        [scale(link.sign, moment_gain)],
+        [scale(link.sign, force_gain)],
+    )
+
+
+def _reduced(a: Mat, column: Vec, gain: Vec, exact: int | None) -> Mat:
+    """A − column gainᵀ, with the row and column `exact` known to vanish."""
+    return symmetric(
+        [
+            [
+                0.0 if exact in (i, j) or j < i else sub(a[i][j], mul(column[i], gain[j]))
+                for j in range(3)
+            ]
+            for i in range(3)
+        ]
+    )
+
+
+def _project_ball(armature: float, body: _Articulated, torques: list[Scalar]) -> _Gain:
+    inertia = [[add(body.moment[i][j], armature * (i == j)) for j in range(3)] for i in range(3)]
+    across = transpose(body.coupling)  # rows of Hᵀ are columns of H
+    effort, *turned = solve_symmetric(inertia, [vsub(torques, body.n), *transpose(body.coupling)])
+    a_rows = transpose(turned)  # D⁻¹ H
+    if armature == 0.0:
+        alpha_rows: Mat = [[float(i == j) for j in range(3)] for i in range(3)]
+    else:
+        alpha_rows = transpose(solve_symmetric(inertia, body.moment))
+    left = matmul(body.moment, a_rows)
+    body.n = vadd(body.n, matvec(body.moment, effort))
+    body.f = vadd(body.f, matvec(across, effort))
+    body.mass = symmetric(
+        [vsub(x, y) for x, y in zip(body.mass, matmul(across, a_rows), strict=True)]
+    )
+    if armature == 0.0:
+        body.n = list(torques)
+        body.coupling = [[0.0] * 3 for _ in range(3)]
+        body.moment = [[0.0] * 3 for _ in range(3)]
+    else:
+        body.coupling = [vsub(x, y) for x, y in zip(body.coupling, left, strict=True)]
+        reduced = matmul(body.moment, alpha_rows)
+        body.moment = symmetric([vsub(x, y) for x, y in zip(body.moment, reduced, strict=True)])
+    return _Gain(effort, alpha_rows, a_rows)
+
+
+def _hang(parent: _Articulated, at: Placed, body: _Articulated) -> None:
+    """Add a projected link to its parent: turned into the parent's axes, moved to its origin."""
+    moment = at.turn.out_symmetric(body.moment)
+    coupling = at.turn.out_matrix(body.coupling)
+    mass = at.turn.out_symmetric(body.mass)
+    n, f = at.turn.out(body.n), at.turn.out(body.f)
+    p = tilde(at.position)
+    shifted = matmul(p, mass)  # p̃ M
+    moved = madd(coupling, shifted)  # H + p̃ M
+    # I − H p̃ + p̃ Hᵀ − p̃ M p̃ = I + p̃ Hᵀ − (H + p̃ M) p̃, symmetric as a whole
+    left, right = matmul(p, transpose(coupling)), matmul(moved, p)
+    parent.moment = symmetric(
+        [
+            [
+                add(parent.moment[i][j], add(moment[i][j], sub(left[i][j], right[i][j])))
+                if j >= i
+                else 0.0
+                for j in range(3)
+            ]
+            for i in range(3)
+        ]
+    )
+    parent.coupling = madd(parent.coupling, moved)
+    parent.mass = symmetric(madd(parent.mass, mass))
+    parent.n = vadd(parent.n, n, cross(at.position, f))
+    parent.f = vadd(parent.f, f)
+
+
+def _accelerations(
+    tree: Tree,
+    placed: list[Placed],
+    moving: list[Rates],
+    bodies: list[_Articulated],
+    gains: list[_Gain | None],
+    gravity: Vec,
+) -> tuple[Vec, Vec, list[Scalar]]:
+    """Outward again: the base's acceleration, then each joint's in turn.
+
+    Falling in gravity is the same as accelerating upward without it, so −gravity is given to
+    the ground (and to a free base's own acceleration in the end).
+    """
+    against = scale(-1.0, gravity)
+    alphas: list[Vec] = []
+    accelerations: list[Vec] = []
+    count = sum(link.joint.speeds for link in tree.links if link.joint is not None)
+    joints: list[Scalar] = [0.0] * count
+    base_alpha: Vec = [0.0] * 3
+    base_a: Vec = against
+    for index, (link, at, motion) in enumerate(zip(tree.links, placed, moving, strict=True)):
+        if link.joint is None:
+            base_alpha, base_a = _freed(bodies[index])
+            alphas.append(base_alpha)
+            accelerations.append(base_a)
+            continue
+        alpha_p = alphas[link.parent] if link.parent >= 0 else [0.0] * 3
+        a_p = accelerations[link.parent] if link.parent >= 0 else against
+        alpha = vadd(at.turn.into(alpha_p), motion.spin)
+        a = vadd(at.turn.into(vadd(a_p, cross(alpha_p, at.position))), motion.pull)
+        gain = gains[index]
+        assert gain is not None
+        own = [
+            sub(b, add(dot(x, alpha), dot(y, a)))
+            for b, x, y in zip(gain.bias, gain.alpha_rows, gain.a_rows, strict=True)
+        ]
+        joints[link.speeds] = own
+        vector = joint_vector(link, joints)
+        alphas.append(alpha if link.joint.kind == "slide" else vadd(alpha, vector))
+        accelerations.append(vadd(a, vector) if link.joint.kind == "slide" else a)
+    return base_alpha, vsub(base_a, against) if tree.free else [0.0] * 3, joints
+
+
+def _freed(base: _Articulated) -> tuple[Vec, Vec]:
+    """α and a of a base that nothing holds: [I H; Hᵀ M] (α, a) = −(n, f)."""
+    whole = [
+        *([*base.mass[i], *[base.coupling[j][i] for j in range(3)]] for i in range(3)),
+        *([*base.coupling[i], *base.moment[i]] for i in range(3)),
+    ]
+    (solution,) = solve_symmetric(whole, [scale(-1.0, [*base.f, *base.n])])
+    return solution[3:], solution[:3]

@@ -1,0 +1,176 @@
+"""Composite inertia and the mass matrix: a body with what hangs from it held still."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from somersault.dynamics._motion import Placed, place
+from somersault.dynamics._tree import Link, Tree
+from somersault.dynamics._vector import (
+    Mat,
+    Scalar,
+    Vec,
+    add,
+    cross,
+    dot,
+    madd,
+    matvec,
+    mul,
+    scale,
+    steiner,
+    vadd,
+)
+
+_UNITS: Mat = [[float(i == j) for j in range(3)] for i in range(3)]
+
+
+@dataclass(frozen=True)
+class Composite:
+    """A link and all that hangs from it as one rigid body: inertia about its frame's origin."""
+
+    mass: Scalar
+    first: Vec
+    inertia: Mat
+
+    @property
+    def centre(self) -> Vec:
+        """Centre of mass, from the frame's origin."""
+        return scale(1.0 / self.mass, self.first)
+
+    @property
+    def about_centre(self) -> Mat:
+        """Inertia about the centre of mass."""
+        return madd(self.inertia, [scale(-1.0, row) for row in steiner(self.mass, self.centre)])
+
+    def load(self, alpha: Vec, a: Vec) -> tuple[Vec, Vec]:
+        """Moment about the origin and force that accelerate it from rest."""
+        moment = vadd(matvec(self.inertia, alpha), cross(self.first, a))
+        return moment, vadd(scale(self.mass, a), cross(alpha, self.first))
+
+
+def composites(tree: Tree, placed: Sequence[Placed]) -> list[Composite]:
+    """Each link with everything outboard of it, in the link's axes."""
+    result = [
+        Composite(
+            link.mass,
+            scale(link.mass, link.com),
+            madd(link.inertia, steiner(link.mass, link.com)),
+        )
+        for link in tree.links
+    ]
+    for index in range(len(result) - 1, -1, -1):
+        at, outer = placed[index], result[index]
+        if at.link.joint is None or at.link.parent < 0:
+            continue
+        first = at.turn.out(outer.first)
+        inertia = at.turn.out_symmetric(outer.inertia)
+        inner = result[at.link.parent]
+        result[at.link.parent] = Composite(
+            add(inner.mass, outer.mass),
+            vadd(inner.first, first, scale(outer.mass, at.position)),
+            madd(madd(inner.inertia, inertia), _moved(outer.mass, first, at.position)),
+        )
+    return result
+
+
+def _moved(mass: Scalar, first: Vec, p: Vec) -> Mat:
+    """What moving a body by p adds to its inertia about the old origin."""
+    twice = mul(2.0, dot(first, p))
+    shift = steiner(mass, p)
+    return [
+        [
+            add(
+                add(shift[i][j], twice if i == j else 0.0),
+                mul(-1.0, add(mul(first[i], p[j]), mul(p[i], first[j]))),
+            )
+            for j in range(3)
+        ]
+        for i in range(3)
+    ]
+
+
+def outboard_inertia(tree: Tree, placed: Sequence[Placed]) -> list[Scalar]:
+    """For each joint speed, the inertia (a slide: mass) that it alone would move.
+
+    About the joint's axis with the outboard joints locked, the I of K = k/(Ω² I). For a ball,
+    the moments about its body's axes.
+    """
+    result: list[Scalar] = []
+    for link, whole in zip(tree.links, composites(tree, placed), strict=True):
+        if link.joint is None:
+            continue
+        if link.joint.kind == "slide":
+            result.append(whole.mass)
+        elif link.joint.kind == "hinge":
+            result.append(whole.inertia[link.axis][link.axis])
+        else:
+            result += [whole.inertia[k][k] for k in range(3)]
+    return result
+
+
+def mass_matrix(tree: Tree, q: Sequence[Scalar]) -> Mat:
+    """M in T = ½ vᵀ M v, v = (ω, velocity of the base's centre of mass, joint speeds).
+
+    By composite bodies (Walker & Orin 1982). Without a free base, of the joint speeds alone.
+    """
+    placed = place(tree, q)
+    wholes = composites(tree, placed)
+    count = sum(link.joint.speeds for link in tree.links if link.joint is not None)
+    ahead = 6 if tree.free else 0
+    matrix: Mat = [[0.0] * (ahead + count) for _ in range(ahead + count)]
+    if tree.free:
+        for k, unit in enumerate(_UNITS):
+            for column, motion in ((k, (unit, [0.0] * 3)), (3 + k, ([0.0] * 3, unit))):
+                moment, force = wholes[0].load(*motion)
+                for row, value in enumerate([*moment, *force]):
+                    matrix[row][column] = value
+    for index, link in enumerate(tree.links):
+        for column, (moment, force) in _unit_loads(link, wholes[index]):
+            rotor = link.joint.armature if link.joint is not None else 0.0
+            _pass_to_base(tree, placed, index, moment, force, matrix, column, ahead)
+            matrix[ahead + column][ahead + column] = add(
+                matrix[ahead + column][ahead + column], rotor
+            )
+    return matrix
+
+
+def _unit_loads(link: Link, whole: Composite) -> list[tuple[int, tuple[Vec, Vec]]]:
+    """The load that one unit of each of the joint's own accelerations takes."""
+    if link.joint is None:
+        return []
+    still: Vec = [0.0] * 3
+    if link.joint.kind == "ball":
+        return [(link.speeds.start + k, whole.load(_UNITS[k], still)) for k in range(3)]
+    unit = scale(link.sign, _UNITS[link.axis])
+    motion = (still, unit) if link.joint.kind == "slide" else (unit, still)
+    return [(link.speeds.start, whole.load(*motion))]
+
+
+def _pass_to_base(
+    tree: Tree,
+    placed: Sequence[Placed],
+    index: int,
+    moment: Vec,
+    force: Vec,
+    matrix: Mat,
+    column: int,
+    ahead: int,
+) -> None:
+    """Enter a load's components along every joint from `index` inward."""
+    while True:
+        link = tree.links[index]
+        if link.joint is None:
+            for row, value in enumerate([*moment, *force]):
+                matrix[row][ahead + column] = matrix[ahead + column][row] = value
+            return
+        load = force if link.joint.kind == "slide" else moment
+        own = load if link.joint.kind == "ball" else [mul(link.sign, load[link.axis])]
+        for row, value in enumerate(own, link.speeds.start):
+            matrix[ahead + row][ahead + column] = matrix[ahead + column][ahead + row] = value
+        if link.parent < 0:
+            return
+        at = placed[index]
+        force = at.turn.out(force)
+        moment = vadd(at.turn.out(moment), cross(at.position, force))
+        index = link.parent

@@ -1,0 +1,124 @@
+"""Compiled functions over many samples at once."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import os
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache, cached_property
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from somersault.dynamics._llvm import LANES, llvm_module
+
+_ALIGN = 64  # bytes, the width of a block row
+_WORTH_A_THREAD = 256  # blocks below which a second thread costs more than it gives
+
+
+class Kernel:
+    """A function of one vector as machine code, eight samples to a call.
+
+    Built from a CasADi function with one dense vector in and one out. Holds the code for as
+    long as it lives. Results do not depend on how many samples are asked at once, nor on the
+    number of threads: every lane does the same operations in the same order.
+    """
+
+    def __init__(self, function: ca.Function) -> None:
+        self.inputs: int = function.nnz_in(0)
+        self.outputs: int = function.nnz_out(0)
+        self._function = function
+
+    @cached_property
+    def _compiled(self):  # the engine must outlive the addresses taken from it
+        return _compile(llvm_module(self._function, "kernel"))
+
+    @cached_property
+    def address(self) -> int:
+        """Address of `void kernel(const double *x, double *y)` over one block of lanes."""
+        return self._compiled.get_function_address("kernel")
+
+    @cached_property
+    def _many(self):
+        address = self._compiled.get_function_address("kernel_many")
+        return ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)(address)
+
+    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The function at each sample: x (…, inputs) gives (…, outputs)."""
+        x = np.asarray(x, float)
+        count = math.prod(x.shape[:-1])
+        if count == 0:
+            return np.empty((*x.shape[:-1], self.outputs))
+        flat = x.reshape(count, self.inputs)
+        blocks = -(-count // LANES)
+        padded = aligned((blocks * LANES, self.inputs))
+        padded[:count] = flat
+        padded[count:] = flat[-1]
+        packed = aligned((blocks, self.inputs, LANES))
+        packed[...] = padded.reshape(blocks, LANES, self.inputs).swapaxes(1, 2)
+        result = self.blocks(packed).swapaxes(1, 2).reshape(-1, self.outputs)
+        return result[:count].reshape(*x.shape[:-1], self.outputs)
+
+    def blocks(
+        self, x: NDArray[np.float64], out: NDArray[np.float64] | None = None
+    ) -> NDArray[np.float64]:
+        """The same without repacking: x (blocks, inputs, 8), from `aligned`, to (blocks, outputs, 8)."""
+        if out is None:
+            out = aligned((len(x), self.outputs, LANES))
+        workers = _threads() if len(x) >= _WORTH_A_THREAD else 1
+        edges = np.linspace(0, len(x), workers + 1).astype(int)
+        parts = [(x[a:b], out[a:b]) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+        if workers == 1:
+            self._run(*parts[0])
+        else:
+            list(_pool().map(lambda part: self._run(*part), parts))
+        return out
+
+    def _run(self, x: NDArray[np.float64], out: NDArray[np.float64]) -> None:
+        self._many(x.ctypes.data, out.ctypes.data, len(x))
+
+
+def aligned(shape: tuple[int, ...]) -> NDArray[np.float64]:
+    """An empty array whose data start on a 64-byte boundary, as the vector loads need."""
+    count = math.prod(shape)
+    raw = np.empty(count + _ALIGN // 8)
+    start = (-raw.ctypes.data % _ALIGN) // 8
+    return raw[start : start + count].reshape(shape)
+
+
+@cache
+def _threads() -> int:
+    return max(
+        1, len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    )
+
+
+@cache
+def _pool() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(_threads(), thread_name_prefix="somersault")
+
+
+def _target_machine():
+    import llvmlite.binding as llvm
+
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    target = llvm.Target.from_default_triple()
+    return target.create_target_machine(
+        cpu=llvm.get_host_cpu_name(),
+        features=llvm.get_host_cpu_features().flatten(),
+        opt=2,
+        jit=True,
+    )
+
+
+def _compile(text: str):
+    import llvmlite.binding as llvm
+
+    machine = _target_machine()
+    module = llvm.parse_assembly(text)
+    engine = llvm.create_mcjit_compiler(module, machine)
+    engine.finalize_object()
+    return engine

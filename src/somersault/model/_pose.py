@@ -1,0 +1,89 @@
+"""Poses given by the names of joints, and values given for both sides at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from somersault._errors import SomersaultError
+from somersault.model._mirror import mirror_pairs
+from somersault.model._types import Joint, Model
+
+Array = NDArray[np.float64]
+
+
+def pose(model: Model, angles: Mapping[str, ArrayLike] | None) -> Array:
+    """Joint coordinates (…, coordinates) of a pose given by name; the rest stay as drawn.
+
+    Angles may be arrays and broadcast. A pair's common name sets both sides, mirrored. A
+    ball's `name.1`, `name.2`, `name.3` are the components of a rotation vector along its
+    body's axes. Raises SomersaultError for an unknown name, a value that is not finite, or
+    one outside the joint's limits.
+    """
+    given = {
+        name: np.asarray(value, float)
+        for name, value in spread(model, angles or {}, mirrored=True).items()
+    }
+    shape = np.broadcast_shapes(*(value.shape for value in given.values()))
+    q = np.broadcast_to(model.home, (*shape, len(model.home))).copy()
+    turns: dict[str, Array] = {}
+    for name, value in given.items():
+        if not np.all(np.isfinite(value)):
+            raise SomersaultError(f"pose {name}: angles must be finite numbers")
+        joint = _owner(model, name)
+        if joint.kind == "ball":
+            own = turns.setdefault(joint.name, np.zeros((*shape, 3)))
+            own[..., int(name[-1]) - 1] = value
+        else:
+            _check_limits(model, joint, value)
+            q[..., model.coordinate_slice(joint.name)] = value[..., None]
+    for name, turn in turns.items():
+        half = np.linalg.norm(turn, axis=-1, keepdims=True) / 2
+        vector = np.sinc(half / np.pi) / 2 * turn
+        q[..., model.coordinate_slice(name)] = np.concatenate([np.cos(half), vector], -1)
+    return q
+
+
+def _owner(model: Model, name: str) -> Joint:
+    """The joint that a speed's name belongs to (`hip.2` belongs to the ball `hip`)."""
+    if name not in model.speeds:
+        joint = model.joint(name)  # raises, with the names there are, unless it is a ball
+        raise SomersaultError(
+            f"{joint.name} is a ball joint; give {name}.1, {name}.2 and {name}.3 in radians"
+        )
+    return next(j for j in model.joints if name in (j.name, *(f"{j.name}.{k}" for k in "123")))
+
+
+def _check_limits(model: Model, joint: Joint, value: Array) -> None:
+    if joint.limits is None:
+        return
+    low, high = joint.limits
+    out = value[(value < low - 1e-9) | (value > high + 1e-9)]
+    if out.size:
+        raise SomersaultError(
+            f"pose {joint.name}={out.flat[0]:g} is outside the joint's limits in {model.name}; "
+            f"give {low:g} to {high:g}"
+        )
+
+
+def spread(
+    model: Model, values: Mapping[str, ArrayLike], *, mirrored: bool
+) -> dict[str, ArrayLike]:
+    """The same values with each pair's common name replaced by its two speeds' names.
+
+    With `mirrored` the right side gets the sign under which the pair is symmetric (a pose);
+    without, both get the same number (a stiffness).
+    """
+    pairs = {pair.name: pair for pair in mirror_pairs(model) if pair.left != pair.right}
+    result: dict[str, ArrayLike] = {}
+    for name, value in values.items():
+        if name in pairs and name not in model.speeds:
+            pair = pairs[name]
+            result[model.speeds[pair.left]] = value
+            sign = pair.sign if mirrored else 1
+            result[model.speeds[pair.right]] = sign * np.asarray(value, float)
+        else:
+            result[name] = value
+    return result

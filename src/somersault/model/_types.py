@@ -1,0 +1,271 @@
+"""A body in the air: rigid bodies in a tree, joined by hinges, slides and balls.
+
+A `Model` is a value: it is read once, never changed, and knows nothing of motion. What a
+user may get wrong in a model file is refused here, in one place, whatever format it came in.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from somersault._errors import SomersaultError
+
+Vector = tuple[float, float, float]
+Matrix = tuple[Vector, Vector, Vector]
+
+ZERO: Vector = (0.0, 0.0, 0.0)
+IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+GROUND = -1
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """One joint between a body and its parent; a body may have several, applied in order.
+
+    `axis` and `anchor` are in the axes of the body it moves. A hinge turns about `axis`
+    through `anchor` by angle − `reference`; a slide moves along `axis`; a ball turns freely
+    about `anchor` and its coordinate is a unit quaternion (scalar first, child to parent).
+    SI units and radians: `stiffness` N m/rad (N/m for a slide), `rest` the coordinate at
+    which the spring is slack, `damping` N m s/rad, `armature` kg m² (the inertia of a geared
+    rotor, as in MJCF). `limits` are the ends of the coordinate's range, or None.
+    """
+
+    name: str
+    kind: Literal["hinge", "slide", "ball"]
+    axis: Vector = (1.0, 0.0, 0.0)
+    anchor: Vector = ZERO
+    reference: float = 0.0
+    limits: tuple[float, float] | None = None
+    stiffness: float = 0.0
+    rest: float = 0.0
+    damping: float = 0.0
+    armature: float = 0.0
+
+    @property
+    def speeds(self) -> int:
+        """Degrees of freedom: 3 for a ball, else 1."""
+        return 3 if self.kind == "ball" else 1
+
+    @property
+    def coordinates(self) -> int:
+        """Numbers that give its position: 4 (a quaternion) for a ball, else 1."""
+        return 4 if self.kind == "ball" else 1
+
+    @property
+    def home(self) -> tuple[float, ...]:
+        """Its coordinates in the pose in which the file draws the model."""
+        return (1.0, 0.0, 0.0, 0.0) if self.kind == "ball" else (self.reference,)
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """One rigid body. `parent` is the index of its parent, or `GROUND`.
+
+    `position` and `rotation` (columns: this body's axes) place its frame in its parent's
+    when every joint of it stands at its reference. `com` and `inertia` (about `com`) are in
+    the body's own axes; kg, m, kg m².
+    """
+
+    name: str
+    parent: int
+    mass: float
+    com: Vector
+    inertia: Matrix
+    position: Vector = ZERO
+    rotation: Matrix = IDENTITY
+    joints: tuple[Joint, ...] = ()
+
+
+@dataclass(frozen=True)
+class Model:
+    """Bodies in order, parents first. With a `free` base, body 0 is the base, in the air.
+
+    `ignored` says what the file held that has no part in flight. Raises SomersaultError for
+    anything that cannot be a body in the air (see `_check`).
+    """
+
+    name: str
+    free: bool
+    bodies: tuple[Body, ...]
+    ignored: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        _check(self)
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """Every joint, in the order of the bodies: the order of all coordinate vectors."""
+        return tuple(joint for body in self.bodies for joint in body.joints)
+
+    @cached_property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of the joint coordinates; a ball has four (w, x, y, z)."""
+        return tuple(_names(self.joints, ("w", "x", "y", "z")))
+
+    @cached_property
+    def speeds(self) -> tuple[str, ...]:
+        """Names of the joint speeds; a ball has three, along its body's axes."""
+        return tuple(_names(self.joints, ("1", "2", "3")))
+
+    @cached_property
+    def mass(self) -> float:
+        """Total mass in kg."""
+        return math.fsum(body.mass for body in self.bodies)
+
+    @cached_property
+    def home(self) -> np.ndarray:
+        """Joint coordinates of the pose in which the file draws the model, (coordinates,)."""
+        return np.array([value for joint in self.joints for value in joint.home])
+
+    def joint(self, name: str) -> Joint:
+        """The joint of that name; SomersaultError, with the names there are, if none is."""
+        for joint in self.joints:
+            if joint.name == name:
+                return joint
+        raise SomersaultError(
+            f"{self.name} has no joint {name!r}; {_there_are([j.name for j in self.joints])}"
+        )
+
+    def coordinate_slice(self, name: str) -> slice:
+        """Where that joint's coordinates stand in a coordinate vector."""
+        return _slice(self.joints, self.joint(name), "coordinates")
+
+    def speed_slice(self, name: str) -> slice:
+        """Where that joint's speeds stand in a vector of joint speeds."""
+        return _slice(self.joints, self.joint(name), "speeds")
+
+    def renamed(self, name: str) -> Model:
+        """The same model under another name."""
+        return replace(self, name=name)
+
+
+def _names(joints: tuple[Joint, ...], parts: tuple[str, ...]) -> Iterator[str]:
+    for joint in joints:
+        if joint.kind == "ball":
+            yield from (f"{joint.name}.{part}" for part in parts)
+        else:
+            yield joint.name
+
+
+def _slice(joints: tuple[Joint, ...], wanted: Joint, count: str) -> slice:
+    start = 0
+    for joint in joints:
+        if joint is wanted:
+            break
+        start += getattr(joint, count)
+    return slice(start, start + getattr(wanted, count))
+
+
+def _there_are(names: list[str]) -> str:
+    if not names:
+        return "it has none"
+    shown = ", ".join(names[:12]) + (", …" if len(names) > 12 else "")
+    return f"its joints are {shown}"
+
+
+# ------------------------------------------------------------------------- what is refused
+
+
+def _check(model: Model) -> None:
+    """Refuse what cannot be a body in the air, naming the body or joint and the mend."""
+    if not model.bodies:
+        raise SomersaultError(f"{model.name} has no bodies, so nothing can fly; add a body")
+    for what, names in (
+        ("body", [body.name for body in model.bodies]),
+        ("joint", [joint.name for joint in model.joints]),
+    ):
+        twice = next((name for name in names if names.count(name) > 1), None)
+        if twice is not None:
+            raise SomersaultError(
+                f"{model.name} has two {what} elements named {twice!r}; give each its own name"
+            )
+    for index, body in enumerate(model.bodies):
+        _check_tree(model, index, body)
+        _check_body(model, body)
+        for joint in body.joints:
+            _check_joint(model, joint)
+    if model.mass <= 0:
+        raise SomersaultError(f"{model.name} has no mass; give its bodies masses")
+    _check_moving_mass(model)
+
+
+def _check_tree(model: Model, index: int, body: Body) -> None:
+    if not GROUND <= body.parent < index:
+        raise SomersaultError(
+            f"{model.name}: body {body.name!r} must come after its parent, so the bodies form "
+            "a loop or stand out of order"
+        )
+    if model.free and (body.parent == GROUND) != (index == 0):
+        raise SomersaultError(
+            f"{model.name}: body {body.name!r} is not part of the free body; a model in the "
+            "air is one tree, so remove it or join it to the base"
+        )
+    if model.free and index == 0 and body.joints:
+        raise SomersaultError(
+            f"{model.name}: the free base {body.name!r} has joints of its own; remove them"
+        )
+
+
+def _check_body(model: Model, body: Body) -> None:
+    where = f"{model.name}: body {body.name!r}"
+    numbers = np.concatenate(
+        [np.ravel(x) for x in (body.mass, body.com, body.inertia, body.position, body.rotation)]
+    )
+    if not np.all(np.isfinite(numbers)):
+        raise SomersaultError(f"{where} holds a number that is not finite; give finite numbers")
+    if body.mass < 0:
+        raise SomersaultError(f"{where} has the negative mass {body.mass:g}; masses are positive")
+    rotation = np.array(body.rotation)
+    if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-6 or np.linalg.det(rotation) < 0:
+        raise SomersaultError(f"{where} has a rotation that is not one; give orthonormal axes")
+    inertia = np.array(body.inertia)
+    size = np.abs(inertia).max()
+    if np.abs(inertia - inertia.T).max() > 1e-6 * size:
+        raise SomersaultError(f"{where} has an inertia that is not symmetric; make it symmetric")
+    small, middle, large = np.linalg.eigvalsh(inertia)
+    if small < -1e-9 * size:
+        raise SomersaultError(
+            f"{where} has the negative principal inertia {small:g}; inertias are positive"
+        )
+    if large > (small + middle) * (1 + 1e-6):
+        raise SomersaultError(
+            f"{where} has principal inertias {small:g}, {middle:g}, {large:g}: no rigid body has "
+            "one larger than the sum of the other two, so correct the inertia"
+        )
+    if body.mass == 0 and size > 0:
+        raise SomersaultError(f"{where} has inertia but no mass; give it a mass or no inertia")
+
+
+def _check_joint(model: Model, joint: Joint) -> None:
+    where = f"{model.name}: joint {joint.name!r}"
+    numbers = [*joint.axis, *joint.anchor, joint.reference, joint.rest]
+    numbers += [joint.stiffness, joint.damping, joint.armature, *(joint.limits or ())]
+    if not all(map(math.isfinite, numbers)):
+        raise SomersaultError(f"{where} holds a number that is not finite; give finite numbers")
+    if abs(math.hypot(*joint.axis) - 1) > 1e-6:
+        raise SomersaultError(f"{where} has an axis of length {math.hypot(*joint.axis):g}; give 1")
+    if joint.limits is not None and joint.limits[0] > joint.limits[1]:
+        raise SomersaultError(f"{where} has limits in the wrong order; give the smaller first")
+    for what in ("damping", "armature"):
+        if getattr(joint, what) < 0:
+            raise SomersaultError(f"{where} has negative {what}; it must be zero or positive")
+
+
+def _check_moving_mass(model: Model) -> None:
+    """Every joint must move something, or its acceleration has no meaning."""
+    outboard = [body.mass for body in model.bodies]
+    for index in range(len(model.bodies) - 1, 0, -1):
+        if model.bodies[index].parent != GROUND:
+            outboard[model.bodies[index].parent] += outboard[index]
+    for body, mass in zip(model.bodies, outboard, strict=True):
+        if body.joints and mass == 0:
+            raise SomersaultError(
+                f"{model.name}: joint {body.joints[-1].name!r} moves no mass; give body "
+                f"{body.name!r} a mass or remove the joint"
+            )

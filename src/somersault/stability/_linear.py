@@ -1,0 +1,241 @@
+"""Small deviations from a steady spin: their equations, roots, modes and energy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from somersault._errors import SomersaultError
+from somersault.model import Model
+from somersault.model._pose import spread
+from somersault.stability import _gyric
+from somersault.stability._coordinates import Coordinates, coordinates
+from somersault.stability._gyric import TOLERANCE, Attitude
+from somersault.stability._modes import Mode, modes
+from somersault.stability._spin import Spin
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class LinearSpin:
+    """M ẍ + (G + D) ẋ + (K + K′) x = 0, time in units of 1/Ω (Playter 1994, eq. 4.9).
+
+    Matrices (n, n) in kg m², over `coordinates`: tilt, twist and somersault are small turns
+    about the principal axes nearest body axes 1, 3 and 2; mirrored joints move as a pair,
+    symmetrically or antisymmetrically, when both are free to.
+    """
+
+    spin: Spin
+    coordinates: tuple[str, ...]
+    M: Array
+    G: Array
+    D: Array
+    K: Array
+    """Stiffness of the spin alone."""
+    K_springs: Array
+    """K′, stiffness of the springs, over Ω²."""
+    attitude: Attitude
+
+    @cached_property
+    def roots(self) -> NDArray[np.complex128]:
+        """The 2n roots, in units of Ω."""
+        return _gyric.roots(self.M, self.G + self.D, self.K + self.K_springs, self.attitude)
+
+    @cached_property
+    def growth_rate(self) -> float:
+        """Largest growth rate in units of Ω, of motions that keep the angular momentum.
+
+        The drift of the somersault angle and the stroboscopic mode are left out, as in all
+        directional stability (section 2.3).
+        """
+        system = _gyric.reduced(self.M, self.G + self.D, self.K + self.K_springs, self.attitude)
+        return float(_gyric.growth_rate(system))
+
+    @property
+    def stable(self) -> bool:
+        """Directionally stable: nothing grows faster than 1e-6 Ω."""
+        return self.growth_rate <= TOLERANCE
+
+    @property
+    def growth_per_somersault(self) -> float:
+        """Factor by which the fastest mode grows in one turn (1 where nothing grows)."""
+        rate = self.growth_rate
+        return 1.0 if abs(rate) <= TOLERANCE else float(np.exp(min(2 * np.pi * rate, 700.0)))
+
+    @cached_property
+    def potential(self) -> Array:
+        """Eigenvalues, ascending, of the energy's second variation by position.
+
+        At fixed angular momentum (the amended potential), over all but the somersault angle;
+        the kinetic part is positive in the joints' rates. In kg m² (times Ω²).
+        """
+        matrix = _gyric.amended(self.M, self.G, self.K + self.K_springs, self.attitude)
+        return np.linalg.eigvalsh((matrix + matrix.T) / 2)
+
+    @property
+    def energy_signature(self) -> str:
+        """Why the spin is stable, or is not, dampers aside.
+
+        "definite": its energy is a strict minimum (or, with no joint free to move, maximum)
+        among motions of the same angular momentum, so it stays stable, with dampers too.
+        "gyroscopic": the energy is a saddle, and only gyroscopic coupling holds it; damping
+        destroys it. "unstable": neither does.
+        """
+        low, high = self.potential[0], self.potential[-1]
+        small = 1e-9 * max(abs(low), abs(high))
+        rigid = len(self.coordinates) == len(self.attitude.places())
+        if low > small or (rigid and high < -small):
+            return "definite"
+        undamped = replace(self, D=np.zeros_like(self.D))
+        return "gyroscopic" if undamped.stable else "unstable"
+
+    @cached_property
+    def modes(self) -> tuple[Mode, ...]:
+        """The modes, one for each root with Im ≥ 0, named so that a person can read them."""
+        return modes(self)
+
+    @cached_property
+    def subsystems(self) -> tuple[tuple[str, ...], ...]:
+        """Coordinates in groups that do not act on each other."""
+        return tuple(
+            tuple(self.coordinates[i] for i in group)
+            for group in _gyric.blocks(coupled(self.M, self.G, self.K, self.K_springs, self.D))
+        )
+
+    def subsystem(self, coordinate: str) -> LinearSpin:
+        """The decoupled part that holds a coordinate, as a system of its own."""
+        group = next((g for g in self.subsystems if coordinate in g), None)
+        if group is None:
+            raise SomersaultError(
+                f"there is no coordinate {coordinate!r}; there are {', '.join(self.coordinates)}"
+            )
+        return self._part([self.coordinates.index(name) for name in group])
+
+    def _part(self, keep: list[int]) -> LinearSpin:
+        at = np.ix_(keep, keep)
+        return LinearSpin(
+            self.spin,
+            tuple(self.coordinates[i] for i in keep),
+            self.M[at],
+            self.G[at],
+            self.D[at],
+            self.K[at],
+            self.K_springs[at],
+            part_of(self.attitude, keep),
+        )
+
+    def dataset(self) -> Any:
+        """Everything above as a labelled `xarray.Dataset`."""
+        from somersault.stability._tables import linear_dataset
+
+        return linear_dataset(self)
+
+    def __repr__(self) -> str:
+        verdict = "stable" if self.stable else "unstable"
+        return (
+            f"<LinearSpin of {self.spin.model.name} about axis {self.spin.axis}: {verdict}, "
+            f"{self.energy_signature}, ×{self.growth_per_somersault:.3g} a turn, over "
+            f"{', '.join(self.coordinates)}>"
+        )
+
+
+def part_of(attitude: Attitude, keep: list[int]) -> Attitude:
+    """The attitude's places among some of the coordinates."""
+    moved = [
+        keep.index(p) if p in keep else None
+        for p in (attitude.before, attitude.about, attitude.after)
+    ]
+    return Attitude(*moved)
+
+
+def coupled(mass: Array, *others: Array) -> NDArray[np.bool_]:
+    """Which coordinates act on each other, rounding aside, in any of a stack of systems."""
+    size = np.sqrt(_largest(np.einsum("...kk->...k", mass), 1))
+    worst = sum(_largest(a, 2) for a in (mass, *others))
+    return worst > 1e-10 * size[:, None] * size[None, :]
+
+
+def _largest(stack: Array, keep: int) -> Array:
+    return np.abs(stack).max(axis=tuple(range(stack.ndim - keep)))
+
+
+def linear(
+    spin: Spin,
+    stiffness: Mapping[str, float] | None = None,
+    damping: Mapping[str, float] | None = None,
+    lock: Iterable[str] = (),
+    rate: float | None = None,
+) -> LinearSpin:
+    """The linear equations about a spin, with joints sprung, damped or locked.
+
+    `stiffness` and `damping` are non-dimensional, k/(Ω² I) and b/(Ω I), by joint or pair name,
+    I the inertia outboard of the joint about its axis. With a `rate` Ω in rad/s the model's
+    own springs and dampers act on the joints that are not named; without it they are left
+    out. Joints in `lock` are rigid; all others are free.
+    """
+    chosen = coordinates(spin.model, spin.axis, locked_speeds(spin.model, lock))
+    own_k, own_d = (np.array(x) for x in _own(spin, rate))
+    k = diagonal(spin, stiffness, "stiffness", own_k)
+    d = diagonal(spin, damping, "damping", own_d)
+    m, g, k_spin = (
+        chosen.transformed(a) for a in (spin.mass_matrix, spin.gyric_matrix, spin.stiffness_matrix)
+    )
+    springs, dampers = (chosen.transformed(np.diag([0, 0, 0, *x])) for x in (k, d))
+    order = chosen.ordered(coupled(m, g, k_spin, springs, dampers))
+    at = np.ix_(order, order)
+    names = tuple(chosen.names[i] for i in order)
+    return LinearSpin(
+        spin,
+        names,
+        m[at],
+        g[at],
+        dampers[at],
+        k_spin[at],
+        springs[at],
+        part_of(chosen.attitude, order),
+    )
+
+
+def _own(spin: Spin, rate: float | None) -> tuple[list[float], list[float]]:
+    """The model's own springs and dampers at a spin rate, over Ω² and over Ω, kg m²."""
+    joints = [joint for joint in spin.model.joints for _ in range(joint.speeds)]
+    if rate is None:
+        return [0.0] * len(joints), [0.0] * len(joints)
+    if not np.isfinite(rate) or rate == 0:
+        raise SomersaultError(f"a spin rate of {rate} rad/s is no spin; give one that is not zero")
+    return [j.stiffness / rate**2 for j in joints], [j.damping / abs(rate) for j in joints]
+
+
+def diagonal(spin: Spin, given: Mapping[str, float] | None, what: str, default: Array) -> Array:
+    """Spring (damper) numbers at each joint speed in kg m², from non-dimensional ones."""
+    result = default.copy()
+    for name, value in spread(spin.model, given or {}, mirrored=False).items():
+        if not np.all(np.isfinite(value)):
+            raise SomersaultError(f"{what} of {name} is {value}; give a finite number")
+        own = spin.model.speed_slice(name)
+        speeds = spin.model.speeds[own]
+        result[own] = [float(value) * spin.outboard_inertias[s] for s in speeds]
+    return result
+
+
+def locked_speeds(model: Model, lock: Iterable[str]) -> set[int]:
+    """Places of the locked joints' speeds; "all" locks every joint."""
+    if isinstance(lock, str):
+        lock = [lock]
+    names = list(lock)
+    if "all" in names:
+        names = [joint.name for joint in model.joints]
+    places: set[int] = set()
+    for name in spread(model, dict.fromkeys(names, 0.0), mirrored=False):
+        own = model.speed_slice(name)
+        places |= set(range(own.start, own.stop))
+    return places
+
+
+__all__ = ["Coordinates", "LinearSpin", "linear"]

@@ -1,0 +1,216 @@
+"""Steady spins: a body turning for ever about one of its principal axes, joints held."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import permutations
+from types import MappingProxyType
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from somersault._errors import SomersaultError
+from somersault.dynamics import Equations, Kernel
+from somersault.model import Model
+from somersault.model._load import load
+from somersault.model._pose import pose as posed
+from somersault.stability._matrices import spin_matrices
+
+Array = NDArray[np.float64]
+Axis = Literal["minor", "intermediate", "major", 1, 2, 3]
+_RANK = {"minor": 0, "intermediate": 1, "major": 2}
+
+
+@dataclass(frozen=True, eq=False)
+class Spin:
+    """A body turning steadily about a principal axis in a fixed pose.
+
+    Any pose is one, with constant torques at the joints; springs pretensioned to those
+    torques hold it without effort (Playter 1994, section 4.2.2).
+    """
+
+    model: Model
+    axis: int
+    """1, 2 or 3: the body axis nearest the axis of spin."""
+    pose: Array
+    """Joint coordinates (coordinates,)."""
+    principal_inertias: Array
+    """About the principal axes nearest body axes 1, 2 and 3, (3,), kg m²."""
+    principal_axes: Array
+    """Their directions, as columns, in the base's axes, (3, 3)."""
+    holding_torques: Mapping[str, float]
+    """What holds each joint at Ω = 1 rad/s, by its speed's name, N m (N); times Ω² otherwise."""
+    outboard_inertias: Mapping[str, float]
+    """The I of each joint in K = k/(Ω² I), by its speed's name, kg m² (kg for a slide)."""
+    mass_matrix: Array
+    """M over turns about the principal axes and the joint speeds, kg m²."""
+    gyric_matrix: Array
+    """G over the same, at Ω = 1 rad/s."""
+    stiffness_matrix: Array
+    """K over the same, of the spin alone, at Ω = 1 rad/s."""
+
+    @property
+    def inertia_ratios(self) -> dict[str, float]:
+        """k1 and k3 (section 2.3.2), I2 being the inertia about the axis of spin.
+
+        For spins about other axes than 2 the axes are renamed in turn, so that the order
+        1, 2, 3 stays right-handed.
+        """
+        before, about, after = self.principal_inertias[list(cycle(self.axis))]
+        return {"k1": float((about - after) / before), "k3": float((about - before) / after)}
+
+
+def cycle(axis: int) -> tuple[int, int, int]:
+    """Indices of the axes before, of and after the spin, in right-handed order."""
+    about = axis - 1
+    return (about + 2) % 3, about, (about + 1) % 3
+
+
+def spin(
+    model: str | Model, axis: Axis | str | int = 2, pose: Mapping[str, ArrayLike] | None = None
+) -> Spin:
+    """The steady spin of a model in a pose about a principal axis.
+
+    `axis` is "minor", "intermediate" or "major", or 1, 2, 3 for the principal axis nearest
+    that body axis (2: a somersault). `pose` gives joint angles by name in rad (m for slides),
+    a left–right pair's by its common name; the rest stand as the file draws them. Raises
+    SomersaultError for a model without a free base, an unknown axis or joint, or a pose
+    outside limits.
+    """
+    model = load(model)
+    require_free(model)
+    q = posed(model, pose)
+    if q.ndim != 1:
+        raise SomersaultError("a spin has one pose; use stability.chart for several")
+    about = principal(composite_inertia(model, q))
+    index = axis_index(about, axis)
+    turned = evaluated(model, q, about.axes[:, index])
+    return Spin(
+        model,
+        index + 1,
+        q,
+        about.inertias,
+        about.axes,
+        MappingProxyType(dict(zip(model.speeds, turned.holding.tolist(), strict=True))),
+        MappingProxyType(dict(zip(model.speeds, turned.outboard.tolist(), strict=True))),
+        *turned.in_axes(about.axes),
+    )
+
+
+def require_free(model: Model) -> None:
+    """Refuse a model whose base cannot turn freely."""
+    if not model.free:
+        raise SomersaultError(
+            f"{model.name} has a fixed base, so it cannot spin freely; give its base a free joint"
+        )
+
+
+# ----------------------------------------------------------------- many poses and numbers
+
+
+@dataclass(frozen=True)
+class Principal:
+    """Principal inertias (…, 3) nearest body axes 1, 2, 3, and axes as columns (…, 3, 3)."""
+
+    inertias: Array
+    axes: Array
+
+
+def principal(inertia: Array) -> Principal:
+    """Principal axes, each matched to the body axis it lies nearest and pointing its way.
+
+    Where two inertias are equal their axes are not determined; a relative nudge of 1e-11
+    picks those along the body's own.
+    """
+    nudge = (
+        np.diag([3.0, 2.0, 1.0]) * 1e-11 * np.trace(inertia, axis1=-2, axis2=-1)[..., None, None]
+    )
+    values, vectors = np.linalg.eigh(inertia + nudge)
+    orders = np.array(list(permutations(range(3))))
+    along = np.abs(vectors)  # [body axis, principal axis]
+    match = np.stack([sum(along[..., k, order[k]] for k in range(3)) for order in orders], -1)
+    order = orders[np.argmax(match, -1)]
+    values = np.take_along_axis(values, order, -1)
+    axes = np.take_along_axis(vectors, order[..., None, :], -1)
+    diagonal = np.einsum("...kk->...k", axes)
+    axes = axes * np.where(diagonal < 0, -1.0, 1.0)[..., None, :]
+    # Three axes that each point along their body axis can still be left-handed; turn the
+    # least certain one round.
+    left_handed = np.linalg.det(axes) < 0
+    least = np.argmin(np.abs(np.einsum("...kk->...k", axes)), -1)
+    flip = np.where(left_handed[..., None] & (np.arange(3) == least[..., None]), -1.0, 1.0)
+    return Principal(values, axes * flip[..., None, :])
+
+
+def axis_index(about: Principal, axis: Axis | str | int) -> int:
+    """Index 0, 1, 2 of the principal axis meant."""
+    if str(axis) in ("1", "2", "3"):
+        return int(axis) - 1
+    if axis in _RANK:
+        return int(np.argsort(about.inertias)[_RANK[str(axis)]])
+    raise SomersaultError(
+        f"{axis!r} is no axis to spin about; use minor, intermediate, major, 1, 2 or 3"
+    )
+
+
+@dataclass(frozen=True)
+class Evaluated:
+    """Spin matrices over the base's axes and the joint speeds, for one pose or many."""
+
+    mass: Array
+    gyric: Array
+    stiffness: Array
+    holding: Array
+    outboard: Array
+
+    def in_axes(self, axes: Array) -> tuple[Array, Array, Array]:
+        """M, G, K with turns about the principal axes instead of the base's."""
+        size = self.mass.shape[-1]
+        to_base = np.broadcast_to(np.eye(size), (*axes.shape[:-2], size, size)).copy()
+        to_base[..., :3, :3] = axes
+        back = np.swapaxes(to_base, -1, -2)
+        return tuple(back @ a @ to_base for a in (self.mass, self.gyric, self.stiffness))  # type: ignore[return-value]
+
+
+@lru_cache(maxsize=16)
+def _equations(model: Model, parameters: tuple[str, ...]) -> Equations:
+    return Equations(model, parameters)
+
+
+@lru_cache(maxsize=16)
+def _kernel(model: Model, parameters: tuple[str, ...]) -> Kernel:
+    equations = _equations(model, parameters)
+    return equations.kernel(spin_matrices(equations))
+
+
+def composite_inertia(
+    model: Model, q: Array, parameters: tuple[str, ...] = (), values: Array | None = None
+) -> Array:
+    """Inertia about the centre of mass, (…, 3, 3), in the base's axes."""
+    return _equations(model, parameters).inertia(q, values)
+
+
+def evaluated(
+    model: Model,
+    q: Array,
+    axis: Array,
+    parameters: tuple[str, ...] = (),
+    values: Array | None = None,
+) -> Evaluated:
+    """Spin matrices at poses q (…, coordinates) about unit vectors `axis` (…, 3)."""
+    values = np.zeros(0) if values is None else values
+    lead = np.broadcast_shapes(q.shape[:-1], axis.shape[:-1], values.shape[:-1])
+    parts = [np.broadcast_to(x, (*lead, x.shape[-1])) for x in (q, axis, values)]
+    size = 3 + len(model.speeds)
+    rows = _kernel(model, parameters)(np.concatenate(parts, -1))
+    rows = rows.reshape(*lead, size, 3 * size + 2)
+    return Evaluated(
+        rows[..., :size],
+        rows[..., size : 2 * size],
+        rows[..., 2 * size : 3 * size],
+        rows[..., 3:, -2],
+        rows[..., 3:, -1],
+    )
