@@ -1,1 +1,67 @@
-"""Bodies in the air: will this maneuver come out right by itself?"""
+"""Bodies in the air: which spins are stable, and which springs make them so.
+
+    import somersault as so
+
+    spin = so.spin("furrer", axis=2, pose={"shoulder": 1.4})
+    layout = spin.linear(stiffness={"shoulder": 1.2})
+    print(layout.stable, layout.energy_signature)
+
+Names are imported when they are first used, so that starting costs little.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from somersault import stability
+    from somersault._errors import SomersaultError, SomersaultWarning
+    from somersault.dynamics import Equations
+    from somersault.model import Body, Joint, Model, load, shipped
+    from somersault.stability import LinearSpin, Mode, Spin, spin
+
+__version__ = "0.1.0"
+
+_HOME = {
+    "SomersaultError": "somersault._errors",
+    "SomersaultWarning": "somersault._errors",
+    "Body": "somersault.model",
+    "Joint": "somersault.model",
+    "Model": "somersault.model",
+    "load": "somersault.model",
+    "shipped": "somersault.model",
+    "Equations": "somersault.dynamics",
+    "LinearSpin": "somersault.stability",
+    "Mode": "somersault.stability",
+    "Spin": "somersault.stability",
+    "spin": "somersault.stability",
+}
+
+__all__ = [
+    "Body",
+    "Equations",
+    "Joint",
+    "LinearSpin",
+    "Mode",
+    "Model",
+    "SomersaultError",
+    "SomersaultWarning",
+    "Spin",
+    "load",
+    "shipped",
+    "spin",
+    "stability",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "stability":
+        return import_module("somersault.stability")
+    if name in _HOME:
+        return getattr(import_module(_HOME[name]), name)
+    raise AttributeError(f"module 'somersault' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*__all__, "__version__"])

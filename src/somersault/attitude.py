@@ -9,10 +9,12 @@ components into inertial ones, so `matrix_from_quaternion(q)` is `C_bi` transpos
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from somersault._array import Array
 
 
-def matrix_from_quaternion(quaternion: ArrayLike) -> NDArray[np.float64]:
+def matrix_from_quaternion(quaternion: ArrayLike) -> Array:
     """Rotation matrix (…, 3, 3) of unit quaternions (…, 4)."""
     w, x, y, z = np.moveaxis(np.asarray(quaternion, float), -1, 0)
     return np.stack(

@@ -2,5 +2,6 @@
 
 from somersault.dynamics._equations import Equations, Expression
 from somersault.dynamics._kernel import Kernel
+from somersault.dynamics._printing import c_code, latex
 
-__all__ = ["Equations", "Expression", "Kernel"]
+__all__ = ["Equations", "Expression", "Kernel", "c_code", "latex"]

@@ -15,8 +15,9 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from somersault._array import Array
 from somersault._errors import SomersaultError
 from somersault.dynamics import _composite, _springs
 from somersault.dynamics._articulated import forward_dynamics
@@ -26,8 +27,6 @@ from somersault.dynamics._newton_euler import inverse_dynamics, momentum
 from somersault.dynamics._tree import Tree, parameter_names, parameter_value, tree
 from somersault.dynamics._vector import Mat, Vec, cross, matmul, scale, tilde, transpose, vadd, vsub
 from somersault.model._types import Model
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -53,13 +52,24 @@ class Equations:
     """Forward and inverse dynamics, mass matrix, momentum and energy of one model.
 
     `parameters` names numbers that stay open, so that a sweep compiles once: "mass.BODY",
-    "com.BODY.1", "inertia.BODY.12", "stiffness.JOINT", "rest.JOINT", "damping.JOINT"; each
+    "com.BODY.1", "inertia.BODY.12", "position.BODY.2", "stiffness.JOINT", "rest.JOINT", "damping.JOINT"; each
     method then takes `parameters`, (…, number of them), and uses the model's own where none
     are given. Everything else is a constant in the compiled code.
 
     Arguments are arrays whose leading dimensions broadcast; results have those dimensions in
     front. Each quantity is derived and compiled when it is first asked for.
     """
+
+    QUANTITIES = (
+        "forward_dynamics",
+        "inverse_dynamics",
+        "mass_matrix",
+        "momentum",
+        "kinetic_energy",
+        "spring_energy",
+        "inertia",
+        "outboard_inertia",
+    )
 
     def __init__(self, model: Model, parameters: Sequence[str] = ()) -> None:
         self.model = model
@@ -69,7 +79,8 @@ class Equations:
             if name not in known:
                 raise SomersaultError(
                     f"{model.name} has no parameter {name!r}; parameters are mass.BODY, "
-                    "com.BODY.1, inertia.BODY.12, stiffness.JOINT, rest.JOINT and damping.JOINT"
+                    "com.BODY.1, position.BODY.1, inertia.BODY.12, stiffness.JOINT, rest.JOINT and "
+                    "damping.JOINT"
                 )
         self._kernels: dict[str, Kernel] = {}
 
@@ -122,10 +133,11 @@ class Equations:
 
     def expression(self, name: str) -> Expression:
         """The symbolic form of one of the methods below, by its name."""
-        build = getattr(self, f"_{name}", None)
-        if name not in _NAMES or build is None:
-            raise SomersaultError(f"no equation is called {name!r}; there are {', '.join(_NAMES)}")
-        arguments, value = build()
+        if name not in self.QUANTITIES:
+            raise SomersaultError(
+                f"no quantity is called {name!r}; there are {', '.join(self.QUANTITIES)}"
+            )
+        arguments, value = getattr(self, f"_{name}")()
         return Expression(name, {**arguments, "parameters": self._p}, value)
 
     def derivative(self, name: str, argument: str) -> Expression:
@@ -133,7 +145,8 @@ class Equations:
         expression = self.expression(name)
         if argument not in expression.arguments:
             raise SomersaultError(
-                f"{name} does not depend on {argument!r}; it takes {', '.join(expression.arguments)}"
+                f"{name} does not depend on {argument!r}; it takes "
+                f"{', '.join(expression.arguments)}"
             )
         flat = ca.vec(expression.value.T)
         value = ca.jacobian(flat, expression.arguments[argument])
@@ -302,6 +315,10 @@ class Equations:
         )
 
     def _inertia(self) -> tuple[dict[str, Any], Any]:
+        if not self.model.free:
+            raise SomersaultError(
+                f"{self.model.name} has a fixed base, so it has no inertia of its own in the air"
+            )
         placed = place(self.tree, self._coordinates())
         whole = _composite.composites(self.tree, placed)[0]
         return {"q": self._q}, _matrix(whole.about_centre)
@@ -309,18 +326,6 @@ class Equations:
     def _outboard_inertia(self) -> tuple[dict[str, Any], Any]:
         placed = place(self.tree, self._coordinates())
         return {"q": self._q}, ca.vertcat(*_composite.outboard_inertia(self.tree, placed))
-
-
-_NAMES = (
-    "forward_dynamics",
-    "inverse_dynamics",
-    "mass_matrix",
-    "momentum",
-    "kinetic_energy",
-    "spring_energy",
-    "inertia",
-    "outboard_inertia",
-)
 
 
 def _given(**arguments: ArrayLike | None) -> dict[str, ArrayLike]:

@@ -7,11 +7,12 @@ import math
 import os
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache, cached_property
+from itertools import pairwise
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
+from somersault._array import Array
 from somersault.dynamics._llvm import LANES, llvm_module
 
 _ALIGN = 64  # bytes, the width of a block row
@@ -45,7 +46,7 @@ class Kernel:
         address = self._compiled.get_function_address("kernel_many")
         return ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)(address)
 
-    def __call__(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    def __call__(self, x: Array) -> Array:
         """The function at each sample: x (…, inputs) gives (…, outputs)."""
         x = np.asarray(x, float)
         count = math.prod(x.shape[:-1])
@@ -61,26 +62,25 @@ class Kernel:
         result = self.blocks(packed).swapaxes(1, 2).reshape(-1, self.outputs)
         return result[:count].reshape(*x.shape[:-1], self.outputs)
 
-    def blocks(
-        self, x: NDArray[np.float64], out: NDArray[np.float64] | None = None
-    ) -> NDArray[np.float64]:
-        """The same without repacking: x (blocks, inputs, 8), from `aligned`, to (blocks, outputs, 8)."""
+    def blocks(self, x: Array, out: Array | None = None) -> Array:
+        """The same without repacking: x (blocks, inputs, 8), from `aligned`, gives
+        (blocks, outputs, 8)."""
         if out is None:
             out = aligned((len(x), self.outputs, LANES))
         workers = _threads() if len(x) >= _WORTH_A_THREAD else 1
         edges = np.linspace(0, len(x), workers + 1).astype(int)
-        parts = [(x[a:b], out[a:b]) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+        parts = [(x[a:b], out[a:b]) for a, b in pairwise(edges)]
         if workers == 1:
             self._run(*parts[0])
         else:
             list(_pool().map(lambda part: self._run(*part), parts))
         return out
 
-    def _run(self, x: NDArray[np.float64], out: NDArray[np.float64]) -> None:
+    def _run(self, x: Array, out: Array) -> None:
         self._many(x.ctypes.data, out.ctypes.data, len(x))
 
 
-def aligned(shape: tuple[int, ...]) -> NDArray[np.float64]:
+def aligned(shape: tuple[int, ...]) -> Array:
     """An empty array whose data start on a 64-byte boundary, as the vector loads need."""
     count = math.prod(shape)
     raw = np.empty(count + _ALIGN // 8)

@@ -152,9 +152,9 @@ def momentum(
         angular, linear = list(_NOTHING), list(_NOTHING)
         for index, link in enumerate(tree.links):
             if link.parent < 0:
-                turn, at = placed[index].turn, placed[index].position
+                turn, position = placed[index].turn, placed[index].position
                 f = turn.out(carried[index][1])
-                angular = vadd(angular, turn.out(carried[index][0]), cross(at, f))
+                angular = vadd(angular, turn.out(carried[index][0]), cross(position, f))
                 linear = vadd(linear, f)
         return Momentum(angular, linear, energy)
     angular, linear = carried[0]

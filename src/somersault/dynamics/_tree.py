@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from somersault.dynamics._vector import Mat, Scalar, Vec
+from somersault.dynamics._vector import Mat, Scalar, Vec, mul, total
 from somersault.model._types import GROUND, Body, Joint, Model
 
 _CLEAN = 1e-14  # entries below this fraction of the largest are rounding, and stand for zero
@@ -57,66 +57,91 @@ Symbols = Mapping[str, Any]
 
 def tree(model: Model, symbols: Symbols | None = None) -> Tree:
     """The links of a model; numbers named in `symbols` ("mass.BODY", "inertia.BODY.12",
-    "com.BODY.3") are the symbols given."""
+    "com.BODY.3", "position.BODY.2") are the symbols given."""
     symbols = symbols or {}
     links: list[Link] = []
-    last: list[tuple[int, np.ndarray, np.ndarray]] = []  # link, its axes and origin, per body
-    speed = coordinate = 0
+    stands: list[_Stand] = []
     masses: list[Scalar] = []
     base_com: Vec = [0.0, 0.0, 0.0]
     for index, body in enumerate(model.bodies):
-        mass, com, inertia = _mass_properties(body, symbols)
-        masses.append(mass)
-        if body.parent == GROUND:
-            parent, axes, origin = -1, np.eye(3), np.zeros(3)
-        else:
-            parent, axes, origin = last[body.parent]
-        rotation, position = np.array(body.rotation), np.array(body.position)
+        properties = _mass_properties(body, symbols)
+        masses.append(properties.mass)
         if model.free and index == 0:
-            base_com = com
-            links.append(Link(-1, None, [0.0] * 3, None, 0, 1.0, mass, [0.0] * 3, inertia))
-            # A symbolic centre of mass of the base is carried by the links that hang from it.
-            last.append((0, np.eye(3), np.zeros(3)))
-            continue
-        for number, joint in enumerate(body.joints):
-            new_axes, axis, sign = _aligned(joint)
-            anchor = np.array(joint.anchor) if joint.kind != "slide" or number == 0 else here
-            to_parent = axes.T @ rotation @ new_axes
-            place: Vec = [
-                float(x) for x in _clean(axes.T @ (position + rotation @ anchor - origin))
-            ]
-            if parent == 0 and model.free and number == 0:
-                place = [place[k] - base_com[k] for k in range(3)]
-            final = number == len(body.joints) - 1
+            base_com = properties.com
             links.append(
-                Link(
-                    parent,
-                    _constant(to_parent),
-                    place,
-                    joint,
-                    axis,
-                    sign,
-                    mass if final else 0.0,
-                    _seen(new_axes, [com[k] - float(anchor[k]) for k in range(3)])
-                    if final
-                    else [0.0] * 3,
-                    _seen_matrix(new_axes, inertia) if final else [[0.0] * 3 for _ in range(3)],
-                    slice(speed, speed + joint.speeds),
-                    slice(coordinate, coordinate + joint.coordinates),
-                )
+                Link(-1, None, _zero(), None, 0, 1.0, properties.mass, _zero(), properties.inertia)
             )
-            speed += joint.speeds
-            coordinate += joint.coordinates
-            parent, axes, origin, here = len(links) - 1, new_axes, anchor, anchor
-            rotation, position = np.eye(3), np.zeros(3)
-        last.append((parent, axes, origin))
+            stands.append(_Stand(0, np.eye(3), list(base_com)))
+            continue
+        on = _Stand(-1, np.eye(3), _zero()) if body.parent == GROUND else stands[body.parent]
+        place = _place_of(body, symbols)
+        rotation = np.array(body.rotation)
+        for number, joint in enumerate(body.joints):
+            last = number == len(body.joints) - 1
+            carried = properties if last else _NOTHING
+            link, on = _jointed(on, place, rotation, joint, number == 0, carried, links)
+            links.append(link)
+            rotation, place = np.eye(3), _zero()
+        stands.append(on)
     return Tree(tuple(links), model.free, base_com, sum(masses[1:], masses[0]))
+
+
+@dataclass(frozen=True)
+class _Stand:
+    """How a body stands in its link: the link, its axes and its frame's origin in the body."""
+
+    link: int
+    axes: np.ndarray
+    origin: Vec
+
+
+def _zero() -> Vec:
+    return [0.0, 0.0, 0.0]
+
+
+def _jointed(
+    on: _Stand,
+    place: Vec,
+    rotation: np.ndarray,
+    joint: Joint,
+    first: bool,
+    carried: _Properties,
+    links: list[Link],
+) -> tuple[Link, _Stand]:
+    """The link of one joint that stands on another, and how the body then stands in it.
+
+    `place` and `rotation` put the body's frame, before the joint moves, in that of the body
+    that `on` is of; for all but its `first` joint that is the body itself.
+    """
+    axes, axis, sign = _aligned(joint)
+    # Where a slide stands along its line is free; it takes the frame of the joint before it.
+    anchor: Vec = list(on.origin) if joint.kind == "slide" and not first else list(joint.anchor)
+    turned = rotation @ np.array(anchor, float)
+    offset = [place[k] + float(turned[k]) - on.origin[k] for k in range(3)]
+    speed = links[-1].speeds.stop if links else 0
+    coordinate = links[-1].coordinates.stop if links else 0
+    link = Link(
+        on.link,
+        _constant(on.axes.T @ rotation @ axes),
+        _seen(on.axes, offset),
+        joint,
+        axis,
+        sign,
+        carried.mass,
+        _seen(axes, [carried.com[k] - anchor[k] for k in range(3)]),
+        _seen_matrix(axes, carried.inertia),
+        slice(speed, speed + joint.speeds),
+        slice(coordinate, coordinate + joint.coordinates),
+    )
+    return link, _Stand(len(links), axes, anchor)
 
 
 def parameter_names(model: Model) -> list[str]:
     """Every number of a model's bodies that can be kept symbolic."""
     names = []
-    for body in model.bodies:
+    for index, body in enumerate(model.bodies):
+        if index or not model.free:  # a free base is where it is
+            names += [f"position.{body.name}.{k}" for k in (1, 2, 3)]
         names.append(f"mass.{body.name}")
         names += [f"com.{body.name}.{k}" for k in (1, 2, 3)]
         names += [f"inertia.{body.name}.{k}" for k in ("11", "12", "13", "22", "23", "33")]
@@ -130,14 +155,22 @@ def parameter_value(model: Model, name: str) -> float:
     body = next(body for body in model.bodies if body.name == body_name)
     if kind == "mass":
         return body.mass
-    if kind == "com":
-        return body.com[int(part) - 1]
+    if kind in ("com", "position"):
+        return getattr(body, kind)[int(part) - 1]
     return body.inertia[int(part[0]) - 1][int(part[1]) - 1]
 
 
-def _mass_properties(body: Body, symbols: Symbols) -> tuple[Scalar, Vec, Mat]:
-    mass = symbols.get(f"mass.{body.name}", body.mass)
-    com = [symbols.get(f"com.{body.name}.{k + 1}", body.com[k]) for k in range(3)]
+@dataclass(frozen=True)
+class _Properties:
+    mass: Scalar
+    com: Vec
+    inertia: Mat
+
+
+_NOTHING = _Properties(0.0, [0.0] * 3, [[0.0] * 3 for _ in range(3)])
+
+
+def _mass_properties(body: Body, symbols: Symbols) -> _Properties:
     numbers = _clean(np.array(body.inertia))
     inertia = [
         [
@@ -146,7 +179,12 @@ def _mass_properties(body: Body, symbols: Symbols) -> tuple[Scalar, Vec, Mat]:
         ]
         for i in range(3)
     ]
-    return mass, com, inertia
+    com = [symbols.get(f"com.{body.name}.{k + 1}", body.com[k]) for k in range(3)]
+    return _Properties(symbols.get(f"mass.{body.name}", body.mass), com, inertia)
+
+
+def _place_of(body: Body, symbols: Symbols) -> Vec:
+    return [symbols.get(f"position.{body.name}.{k + 1}", body.position[k]) for k in range(3)]
 
 
 def _aligned(joint: Joint) -> tuple[np.ndarray, int, float]:
@@ -176,11 +214,11 @@ def _constant(rotation: np.ndarray) -> Mat | None:
 
 def _seen(axes: np.ndarray, v: Vec) -> Vec:
     """A body's vector in its link's axes."""
-    if np.array_equal(axes, np.eye(3)):
-        return v
     if all(isinstance(x, float) for x in v):
         return [float(x) for x in _clean(axes.T @ np.array(v))]
-    return [sum(float(axes[k, i]) * v[k] for k in range(3)) for i in range(3)]
+    if np.array_equal(axes, np.eye(3)):
+        return v
+    return [total([mul(float(axes[k, i]), v[k]) for k in range(3)]) for i in range(3)]
 
 
 def _seen_matrix(axes: np.ndarray, a: Mat) -> Mat:

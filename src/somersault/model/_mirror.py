@@ -12,11 +12,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from somersault._array import Array
 from somersault.model._types import GROUND, Joint, Model
 
-Array = NDArray[np.float64]
 _CLOSE = 1e-6  # of the body's own size
 
 
@@ -84,7 +83,7 @@ def _pairs(model: Model, drawn: list[_Drawn], normal: int) -> tuple[Pair, ...]:
     mirror = np.eye(3)
     mirror[normal, normal] = -1.0
     origin = drawn[0].com
-    size = max(np.linalg.norm(d.com - origin) for d in drawn) + 1e-3
+    size = float(max(np.linalg.norm(d.com - origin) for d in drawn)) + 1e-3
     images: dict[int, int] = {GROUND: GROUND}
     for index, body in enumerate(model.bodies):
         for other in range(len(model.bodies)):

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from somersault._array import Array
 from somersault._errors import SomersaultError
 from somersault.model._mirror import mirror_pairs
 from somersault.model._types import Joint, Model
-
-Array = NDArray[np.float64]
 
 
 def pose(model: Model, angles: Mapping[str, ArrayLike] | None) -> Array:

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from somersault._array import Array
 from somersault.model._types import GROUND, Body, Matrix, Vector
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,9 +1,9 @@
 """Steady spins and small deviations from them: which are stable, and which springs help."""
 
 from somersault.stability._chart import chart, growth_rates, root_locus, stable_ranges
-from somersault.stability._linear import LinearSpin, linear
+from somersault.stability._linear import LinearSpin
 from somersault.stability._modes import Mode
-from somersault.stability._spin import Spin, spin
+from somersault.stability._spin import Spin, principal_inertias, spin
 
 __all__ = [
     "LinearSpin",
@@ -11,8 +11,12 @@ __all__ = [
     "Spin",
     "chart",
     "growth_rates",
-    "linear",
+    "principal_inertias",
     "root_locus",
     "spin",
     "stable_ranges",
 ]
+
+
+def linear(spin, stiffness=None, damping=None, lock=(), rate=None):  # TEMP
+    return spin.linear(stiffness, damping, lock, rate)

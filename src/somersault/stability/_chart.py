@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from somersault._array import Array
 from somersault._errors import SomersaultError
 from somersault.model import Model, load
 from somersault.model._pose import pose as posed
@@ -29,10 +30,9 @@ from somersault.stability._spin import (
 if TYPE_CHECKING:
     import xarray as xr
 
-Array = NDArray[np.float64]
 Values = Mapping[str, ArrayLike]
 _JOINT_KINDS = ("pose", "stiffness", "damping")
-_BODY_KINDS = ("mass", "com", "inertia")
+_BODY_KINDS = ("mass", "com", "position", "inertia")
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ def _sorted_kinds(model: Model, quantities: Values) -> dict[str, dict[str, Array
         else:
             raise SomersaultError(
                 f"{name!r} is no quantity of {model.name}; use pose.JOINT, stiffness.JOINT, "
-                "damping.JOINT, mass.BODY, com.BODY.1 or inertia.BODY.11"
+                "damping.JOINT, mass.BODY, com.BODY.1, position.BODY.1 or inertia.BODY.11"
             )
         if not np.all(np.isfinite(np.asarray(value, float))):
             raise SomersaultError(f"{name} has values that are not finite; give finite numbers")
@@ -151,7 +151,7 @@ def growth_rates(
     """Largest growth rates, in units of Ω, for arrays of quantities that broadcast.
 
     Quantities are named "pose.JOINT" (rad), "stiffness.JOINT" and "damping.JOINT" (k/(Ω² I)
-    and b/(Ω I)), "mass.BODY", "com.BODY.1", "inertia.BODY.11"; a mirrored pair's common name
+    and b/(Ω I)), "mass.BODY", "com.BODY.1", "position.BODY.2", "inertia.BODY.11"; a mirrored pair's common name
     sets both. `subsystem` names a coordinate and keeps only the decoupled part it is in.
     """
     model = load(model)
@@ -243,9 +243,13 @@ def unit(model: Model, name: str) -> str:
             (j for j in model.joints if j.name in spread(model, {rest: 0}, mirrored=True)), None
         )
         return "m" if joint is not None and joint.kind == "slide" else "rad"
-    return {"stiffness": "k/(Ω² I)", "damping": "b/(Ω I)", "mass": "kg", "com": "m"}.get(
-        kind, "kg m2"
-    )
+    return {
+        "stiffness": "k/(Ω² I)",
+        "damping": "b/(Ω I)",
+        "mass": "kg",
+        "com": "m",
+        "position": "m",
+    }.get(kind, "kg m2")
 
 
 def root_locus(
@@ -304,7 +308,7 @@ def stable_ranges(
     name, low, high = along
     values = np.linspace(low, high, samples)
 
-    def stable(at: Array) -> NDArray[np.bool_]:
+    def stable(at: Array) -> Array:
         rates = growth_rates(
             model, {**(fixed or {}), name: at}, axis=axis, lock=lock, subsystem=subsystem
         )

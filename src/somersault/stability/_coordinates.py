@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from somersault._array import Array
 from somersault.model import Model
 from somersault.model._mirror import mirror_pairs
 from somersault.stability._gyric import Attitude, blocks
 from somersault.stability._spin import cycle
 
-Array = NDArray[np.float64]
 _TURNS = ("tilt", "somersault", "twist")  # about axes 1, 2, 3
 
 
@@ -28,7 +27,7 @@ class Coordinates:
         """Bᵀ A B of a matrix (…, 3 + speeds, 3 + speeds)."""
         return self.columns.T @ matrix @ self.columns
 
-    def ordered(self, coupled: NDArray[np.bool_]) -> list[int]:
+    def ordered(self, coupled: Array) -> list[int]:
         """Decoupled subsystems one after the other, the one of tilt and twist first."""
         together = coupled.copy()
         if self.attitude.before is not None and self.attitude.after is not None:

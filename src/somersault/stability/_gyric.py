@@ -16,9 +16,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from somersault._array import Array
 
 TOLERANCE = 1e-6  # growth rates below this, in units of Ω, count as none
 
@@ -40,7 +39,7 @@ class Attitude:
         return [p for p in (self.before, self.about, self.after) if p is not None]
 
 
-def roots(m: Array, c: Array, k: Array, attitude: Attitude) -> NDArray[np.complex128]:
+def roots(m: Array, c: Array, k: Array, attitude: Attitude) -> Array:
     """All 2n roots s of det(M s² + C s + K), (…, 2n), by imaginary part and then real.
 
     Turning about the axis of spin changes nothing, so its column of K is zero and gives one
@@ -162,7 +161,7 @@ def _threaded(function: Callable[[Array], Array], matrices: Array) -> Array:
     return np.concatenate(parts).reshape(matrices.shape[:-2])
 
 
-def blocks(coupled: NDArray[np.bool_]) -> list[list[int]]:
+def blocks(coupled: Array) -> list[list[int]]:
     """Groups of coordinates that do not act on each other: connected components, in order."""
     n = len(coupled)
     near = coupled | coupled.T

@@ -8,18 +8,16 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from somersault._array import Array
 from somersault._errors import SomersaultError
 from somersault.model import Model
 from somersault.model._pose import spread
 from somersault.stability import _gyric
-from somersault.stability._coordinates import Coordinates, coordinates
+from somersault.stability._coordinates import coordinates
 from somersault.stability._gyric import TOLERANCE, Attitude
 from somersault.stability._modes import Mode, modes
 from somersault.stability._spin import Spin
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +41,7 @@ class LinearSpin:
     attitude: Attitude
 
     @cached_property
-    def roots(self) -> NDArray[np.complex128]:
+    def roots(self) -> Array:
         """The 2n roots, in units of Ω."""
         return _gyric.roots(self.M, self.G + self.D, self.K + self.K_springs, self.attitude)
 
@@ -154,7 +152,7 @@ def part_of(attitude: Attitude, keep: list[int]) -> Attitude:
     return Attitude(*moved)
 
 
-def coupled(mass: Array, *others: Array) -> NDArray[np.bool_]:
+def coupled(mass: Array, *others: Array) -> Array:
     """Which coordinates act on each other, rounding aside, in any of a stack of systems."""
     size = np.sqrt(_largest(np.einsum("...kk->...k", mass), 1))
     worst = sum(_largest(a, 2) for a in (mass, *others))
@@ -167,18 +165,12 @@ def _largest(stack: Array, keep: int) -> Array:
 
 def linear(
     spin: Spin,
-    stiffness: Mapping[str, float] | None = None,
-    damping: Mapping[str, float] | None = None,
-    lock: Iterable[str] = (),
-    rate: float | None = None,
+    stiffness: Mapping[str, float],
+    damping: Mapping[str, float],
+    lock: Iterable[str],
+    rate: float | None,
 ) -> LinearSpin:
-    """The linear equations about a spin, with joints sprung, damped or locked.
-
-    `stiffness` and `damping` are non-dimensional, k/(Ω² I) and b/(Ω I), by joint or pair name,
-    I the inertia outboard of the joint about its axis. With a `rate` Ω in rad/s the model's
-    own springs and dampers act on the joints that are not named; without it they are left
-    out. Joints in `lock` are rigid; all others are free.
-    """
+    """What `Spin.linear` gives; its documentation says what the arguments mean."""
     chosen = coordinates(spin.model, spin.axis, locked_speeds(spin.model, lock))
     own_k, own_d = (np.array(x) for x in _own(spin, rate))
     k = diagonal(spin, stiffness, "stiffness", own_k)
@@ -212,15 +204,15 @@ def _own(spin: Spin, rate: float | None) -> tuple[list[float], list[float]]:
     return [j.stiffness / rate**2 for j in joints], [j.damping / abs(rate) for j in joints]
 
 
-def diagonal(spin: Spin, given: Mapping[str, float] | None, what: str, default: Array) -> Array:
+def diagonal(spin: Spin, given: Mapping[str, float], what: str, default: Array) -> Array:
     """Spring (damper) numbers at each joint speed in kg m², from non-dimensional ones."""
     result = default.copy()
-    for name, value in spread(spin.model, given or {}, mirrored=False).items():
-        if not np.all(np.isfinite(value)):
-            raise SomersaultError(f"{what} of {name} is {value}; give a finite number")
+    for name, value in spread(spin.model, given, mirrored=False).items():
+        number = float(np.asarray(value))
+        if not np.isfinite(number):
+            raise SomersaultError(f"{what} of {name} is {number}; give a finite number")
         own = spin.model.speed_slice(name)
-        speeds = spin.model.speeds[own]
-        result[own] = [float(value) * spin.outboard_inertias[s] for s in speeds]
+        result[own] = [number * spin.outboard_inertias[s] for s in spin.model.speeds[own]]
     return result
 
 
@@ -236,6 +228,3 @@ def locked_speeds(model: Model, lock: Iterable[str]) -> set[int]:
         own = model.speed_slice(name)
         places |= set(range(own.start, own.stop))
     return places
-
-
-__all__ = ["Coordinates", "LinearSpin", "linear"]

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from somersault._array import Array
 from somersault.model._mirror import common_name
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ class Mode:
 
     name: str
     root: complex
-    shape: NDArray[np.complex128]
+    shape: Array
     energy: int
 
 
@@ -66,7 +66,7 @@ def _drift(system: LinearSpin) -> Mode | None:
     return Mode(f"{system.coordinates[system.attitude.about]} drift", 0j, shape, 0)
 
 
-def _energy(m: NDArray, k: NDArray, shape: NDArray, root: complex) -> int:
+def _energy(m: Array, k: Array, shape: Array, root: complex) -> int:
     """Sign of ẋᵀMẋ + xᵀKx averaged over an undamped oscillation (Krein's signature)."""
     if abs(root.real) > _SMALL or root.imag < _SMALL or abs(root.imag - 1) < _SMALL:
         return 0
@@ -75,7 +75,7 @@ def _energy(m: NDArray, k: NDArray, shape: NDArray, root: complex) -> int:
     return 0 if abs(value) < _SMALL * size else int(np.sign(value))
 
 
-def _name(system: LinearSpin, shape: NDArray, root: complex) -> str:
+def _name(system: LinearSpin, shape: Array, root: complex) -> str:
     shares = np.abs(shape) * np.abs(system.M @ shape)
     turns = system.attitude.places()
     joints = [i for i in range(len(shape)) if i not in turns]

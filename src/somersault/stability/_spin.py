@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import permutations
 from types import MappingProxyType
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from somersault._array import Array
 from somersault._errors import SomersaultError
 from somersault.dynamics import Equations, Kernel
 from somersault.model import Model
@@ -19,7 +20,9 @@ from somersault.model._load import load
 from somersault.model._pose import pose as posed
 from somersault.stability._matrices import spin_matrices
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from somersault.stability._linear import LinearSpin
+
 Axis = Literal["minor", "intermediate", "major", 1, 2, 3]
 _RANK = {"minor": 0, "intermediate": 1, "major": 2}
 
@@ -51,6 +54,25 @@ class Spin:
     """G over the same, at Ω = 1 rad/s."""
     stiffness_matrix: Array
     """K over the same, of the spin alone, at Ω = 1 rad/s."""
+
+    def linear(
+        self,
+        stiffness: Mapping[str, float] | None = None,
+        damping: Mapping[str, float] | None = None,
+        lock: Iterable[str] = (),
+        rate: float | None = None,
+    ) -> LinearSpin:
+        """The linear equations of small deviations, with joints sprung, damped or locked.
+
+        `stiffness` and `damping` are non-dimensional, k/(Ω² I) and b/(Ω I), by joint or pair
+        name, I the inertia outboard of the joint about its axis. With a `rate` Ω in rad/s the
+        model's own springs and dampers act on the joints that are not named; without it they
+        are left out. Joints in `lock` ("all": every one) are rigid; the others are free.
+        Raises SomersaultError for unknown names and numbers that are not finite.
+        """
+        from somersault.stability._linear import linear
+
+        return linear(self, stiffness or {}, damping or {}, lock, rate)
 
     @property
     def inertia_ratios(self) -> dict[str, float]:
@@ -106,6 +128,13 @@ def require_free(model: Model) -> None:
         raise SomersaultError(
             f"{model.name} has a fixed base, so it cannot spin freely; give its base a free joint"
         )
+
+
+def principal_inertias(model: str | Model, pose: Mapping[str, ArrayLike] | None = None) -> Array:
+    """Principal inertias (…, 3) nearest body axes 1, 2 and 3, kg m²; poses may be arrays."""
+    model = load(model)
+    require_free(model)
+    return principal(composite_inertia(model, posed(model, pose))).inertias
 
 
 # ----------------------------------------------------------------- many poses and numbers

@@ -1,0 +1,58 @@
+# `make reproduce` and `make test` work on a machine with make, python3 (3.11 or later) and its
+# venv module; what they install is pinned in constraints.txt. Both are quick when run again.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+JOBS ?= auto
+
+.PHONY: reproduce test slow check bench docs pins clean
+.DEFAULT_GOAL := reproduce
+
+reproduce: $(VENV)/.package
+	$(BIN)/somersault reproduce --out report
+
+test: $(VENV)/.test
+	$(BIN)/python -m pytest -n $(JOBS) -m "not slow"
+
+slow: $(VENV)/.test
+	$(BIN)/python -m pytest -n $(JOBS) -m slow
+
+check: $(VENV)/.test
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+bench: $(VENV)/.test
+	$(BIN)/python benchmarks/forward_dynamics.py
+	$(BIN)/python benchmarks/stability_chart.py
+
+docs: $(VENV)/.docs
+	$(BIN)/mkdocs build --strict --quiet
+	@echo "site/index.html"
+
+$(VENV)/.venv:
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade pip
+	touch $@
+
+$(VENV)/.package: $(VENV)/.venv pyproject.toml constraints.txt
+	$(BIN)/python -m pip install --quiet -c constraints.txt -e .
+	touch $@
+
+$(VENV)/.test: $(VENV)/.package
+	$(BIN)/python -m pip install --quiet -c constraints.txt -e ".[test]"
+	touch $@
+
+$(VENV)/.docs: $(VENV)/.package
+	$(BIN)/python -m pip install --quiet -c constraints.txt -e ".[docs]"
+	touch $@
+
+# Write the pins anew from the newest releases that fit pyproject.toml.
+pins:
+	$(PYTHON) -m venv .venv-pins
+	.venv-pins/bin/python -m pip install --quiet -e ".[test,docs]"
+	.venv-pins/bin/python -m pip freeze --exclude-editable > constraints.txt
+	rm -rf .venv-pins
+
+clean:
+	rm -rf $(VENV) report site

@@ -1,0 +1,87 @@
+"""The command line: thin commands over the package.
+
+Every command prints for people, or with --json for programs; a mistake gets one sentence on
+standard error and exit code 2.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import warnings
+from collections.abc import Sequence
+from typing import NoReturn, TextIO
+
+from somersault._errors import SomersaultError, SomersaultWarning
+from somersault.cli import _equations, _models, _reproduce, _stability
+
+_COMMANDS = (_models, _stability, _equations, _reproduce)
+
+
+class _Parser(argparse.ArgumentParser):
+    """argparse, but a mistake is one sentence without the usage in front."""
+
+    def error(self, message: str) -> NoReturn:
+        sys.stderr.write(f"{self.prog}: {message}; see {self.prog} --help\n")
+        raise SystemExit(2)
+
+
+def _parser() -> argparse.ArgumentParser:
+    from somersault import __version__
+
+    parser = _Parser(
+        prog="somersault",
+        description="Bodies in the air: which spins are stable, and which springs make them so.",
+        epilog="Example: somersault stability furrer --pose shoulder=1.4 --stiffness shoulder=1.2",
+    )
+    parser.add_argument("--version", action="version", version=f"somersault {__version__}")
+    commands = parser.add_subparsers(
+        title="commands", metavar="COMMAND", required=True, parser_class=_Parser
+    )
+    for command in _COMMANDS:
+        added = commands.add_parser(
+            command.NAME,
+            help=command.HELP,
+            description=command.HELP,
+            epilog=command.EXAMPLES,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        command.add_arguments(added)
+        added.set_defaults(run=command.run)
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; returns the exit code."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("default", SomersaultWarning)
+            warnings.showwarning = _note
+            chosen = _parser().parse_args(arguments)
+            chosen.run(chosen)
+    except SomersaultError as mistake:
+        print(f"somersault: {mistake}", file=sys.stderr)
+        return 2
+    except BrokenPipeError:
+        sys.stderr.close()  # the reader has gone; say nothing more to it
+        return 0
+    except OSError as trouble:
+        where = f" {trouble.filename}" if trouble.filename else ""
+        print(f"somersault: cannot write{where}: {trouble.strerror}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("somersault: stopped", file=sys.stderr)
+        return 130
+    return 0
+
+
+def _note(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    if issubclass(category, SomersaultWarning):
+        print(f"note: {message}", file=sys.stderr)

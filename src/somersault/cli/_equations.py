@@ -1,0 +1,36 @@
+"""`somersault equations MODEL`: its equations of motion, as LaTeX or C."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+NAME = "equations"
+HELP = "The equations of motion of a small model as LaTeX, of any model as C."
+EXAMPLES = """examples:
+  somersault equations book
+  somersault equations simplest --out simplest.tex
+  somersault equations my_robot.urdf --c --out my_robot.c"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.add_argument("model", metavar="MODEL", help="a shipped model's name or a model file")
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument("--latex", action="store_true", help="LaTeX (the default)")
+    kind.add_argument("--c", action="store_true", help="C functions of every quantity")
+    parser.add_argument("--out", type=Path, metavar="FILE", help="write to a file")
+
+
+def run(chosen: argparse.Namespace) -> None:
+    """Print the equations or write them to a file."""
+    from somersault._files import write
+    from somersault.dynamics import c_code, latex
+    from somersault.model import load
+
+    model = load(chosen.model)
+    text = c_code(model) if chosen.c else latex(model)
+    if chosen.out is None:
+        print(text, end="")
+    else:
+        write(chosen.out, text)

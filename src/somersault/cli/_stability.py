@@ -1,0 +1,149 @@
+"""`somersault stability MODEL`: is this spin stable, and why."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from typing import TYPE_CHECKING, Any
+
+from somersault.cli._assignments import assignments
+
+if TYPE_CHECKING:
+    from somersault.stability import LinearSpin
+
+NAME = "stability"
+HELP = "Is a steady spin of a model stable, how fast does it go wrong, and why."
+EXAMPLES = """examples:
+  somersault stability furrer --pose shoulder=1.4 --stiffness shoulder=1.2
+  somersault stability furrer --pose left_shoulder=1.4 right_shoulder=-1.4 --lock all
+  somersault stability my_robot.urdf --axis intermediate --json
+
+A left-right pair may be named once (shoulder for left_shoulder and right_shoulder).
+Angles in rad; stiffness k/(Ω² I) and damping b/(Ω I) without dimension, I the inertia
+outboard of the joint about its axis."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.add_argument("model", metavar="MODEL", help="a shipped model's name or a model file")
+    parser.add_argument(
+        "--axis",
+        default="2",
+        help="minor, intermediate, major, or 1, 2, 3: the principal axis nearest that body "
+        "axis (default 2, the somersault)",
+    )
+    for option, what in (
+        ("--pose", "joint angles in rad (m for slides); the rest stand as the file draws them"),
+        ("--stiffness", "non-dimensional joint springs k/(Ω² I)"),
+        ("--damping", "non-dimensional joint dampers b/(Ω I)"),
+    ):
+        parser.add_argument(
+            option, nargs="+", action="extend", default=[], metavar="JOINT=X", help=what
+        )
+    parser.add_argument(
+        "--lock",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="JOINT",
+        help="joints that are rigid; all: every joint",
+    )
+    parser.add_argument(
+        "--rate",
+        type=float,
+        metavar="RAD/S",
+        help="the spin's rate, with which the model's own springs and dampers count",
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON for programs")
+
+
+def run(chosen: argparse.Namespace) -> None:
+    """Print the verdict."""
+    from somersault.stability import spin
+
+    steady = spin(chosen.model, chosen.axis, assignments("--pose", chosen.pose))
+    model = steady.model
+    if chosen.rate is None and any(j.stiffness or j.damping for j in model.joints):
+        print(
+            f"note: the springs and dampers that {model.name} has of its own are left out; "
+            "give --rate to count them",
+            file=sys.stderr,
+        )
+    system = steady.linear(
+        assignments("--stiffness", chosen.stiffness),
+        assignments("--damping", chosen.damping),
+        chosen.lock,
+        chosen.rate,
+    )
+    if chosen.json:
+        print(json.dumps(_record(system, chosen.axis)))
+    else:
+        print("\n".join(_page(system, chosen.axis)))
+
+
+def _record(system: LinearSpin, axis: str) -> dict[str, Any]:
+    steady = system.spin
+    pose = dict(zip(steady.model.coordinates, steady.pose.tolist(), strict=True))
+    return {
+        "model": steady.model.name,
+        "axis": axis,
+        "pose": pose,
+        "principal_inertias": steady.principal_inertias.tolist(),
+        "inertia_ratios": steady.inertia_ratios,
+        "coordinates": list(system.coordinates),
+        "M": system.M.tolist(),
+        "G": system.G.tolist(),
+        "D": system.D.tolist(),
+        "K": (system.K + system.K_springs).tolist(),
+        "holding_torques": dict(steady.holding_torques),
+        "roots": [[root.real, root.imag] for root in system.roots.tolist()],
+        "stable": system.stable,
+        "growth_per_somersault": system.growth_per_somersault,
+        "energy_signature": system.energy_signature,
+        "modes": [
+            {"name": mode.name, "root": [mode.root.real, mode.root.imag], "energy": mode.energy}
+            for mode in system.modes
+        ],
+    }
+
+
+_WHY = {
+    "definite": "its energy is an extremum among motions of the same angular momentum",
+    "gyroscopic": "only gyroscopic coupling holds it, so damping would destroy it",
+    "unstable": "neither its energy nor gyroscopic coupling holds it",
+}
+
+
+def _page(system: LinearSpin, axis: str) -> list[str]:
+    steady = system.spin
+    ratios = steady.inertia_ratios
+    verdict = "stable" if system.stable else "unstable"
+    lines = [
+        f"{steady.model.name}, spinning about its {_axis(axis, steady.axis)}: {verdict}",
+        f"  grows × {system.growth_per_somersault:.4g} in a turn",
+        f"  energy: {system.energy_signature}, {_WHY[system.energy_signature]}",
+        f"  principal inertias {_numbers(steady.principal_inertias.tolist())} kg m²,"
+        f" k1 {ratios['k1']:.3f}, k3 {ratios['k3']:.3f}",
+    ]
+    if steady.holding_torques:
+        held = ", ".join(f"{name} {value:.4g}" for name, value in steady.holding_torques.items())
+        lines.append(f"  holding torques over Ω²: {held}")
+    lines.append("  modes (roots in units of the spin rate Ω):")
+    width = max(len(mode.name) for mode in system.modes)
+    sign = {1: "positive energy", -1: "negative energy", 0: ""}
+    for mode in system.modes:
+        real, imaginary = (round(x, 4) + 0.0 for x in (mode.root.real, mode.root.imag))
+        root = f"{real:+.4f}" + (f" ± {imaginary:.4f} i" if imaginary else "")
+        lines.append(f"    {mode.name:<{width}}  {root}  {sign[mode.energy]}".rstrip())
+    return lines
+
+
+def _axis(asked: str, number: int) -> str:
+    ways = {1: "front", 2: "left", 3: "head"}
+    name = "" if asked in ("1", "2", "3") else f"{asked} axis, "
+    return f"{name}principal axis nearest {number} ({ways[number]})"
+
+
+def _numbers(values: list[float]) -> str:
+    return ", ".join(f"{value:.4g}" for value in values)

@@ -1,0 +1,74 @@
+"""The rooms import in one direction, start quickly, and stay small."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import somersault
+
+SOURCE = Path(somersault.__file__).parent
+ROOMS = ["attitude", "model", "dynamics", "stability", "view", "thesis", "cli"]
+FOUNDATION = {"_errors", "_array", "_files"}
+MOST_LINES = 420
+
+
+def modules() -> list[Path]:
+    return sorted(SOURCE.rglob("*.py"))
+
+
+def imported_rooms(path: Path) -> set[str]:
+    """Rooms that a file imports from, type-checking imports included."""
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        names = []
+        if isinstance(node, ast.ImportFrom) and node.module:
+            names = [node.module]
+            if node.module == "somersault":
+                names = [f"somersault.{alias.name}" for alias in node.names]
+        elif isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        found |= {n.split(".")[1] for n in names if n.startswith("somersault.")}
+    return found
+
+
+@pytest.mark.parametrize("path", modules(), ids=lambda p: str(p.relative_to(SOURCE)))
+def test_imports_go_one_way(path: Path) -> None:
+    room = path.relative_to(SOURCE).parts[0].removesuffix(".py")
+    if room == "__init__":
+        return
+    allowed = FOUNDATION | {"__version__"}
+    if room in ROOMS:
+        allowed |= set(ROOMS[: ROOMS.index(room) + 1])
+    assert imported_rooms(path) <= allowed
+
+
+@pytest.mark.parametrize("path", modules(), ids=lambda p: str(p.relative_to(SOURCE)))
+def test_a_file_holds_one_idea(path: Path) -> None:
+    assert len(path.read_text().splitlines()) <= MOST_LINES
+
+
+def loaded_by(code: str) -> set[str]:
+    """Top-level packages in memory after running some code in a fresh interpreter."""
+    script = f"import sys\n{code}\nprint(*{{n.split('.')[0] for n in sys.modules}})"
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    return set(run.stdout.split())
+
+
+def test_starting_loads_no_numerics() -> None:
+    loaded = loaded_by("import somersault, somersault.cli; somersault.cli._parser().format_help()")
+    assert not loaded & {"numpy", "casadi", "mujoco", "xarray", "matplotlib", "llvmlite", "rich"}
+
+
+def test_a_verdict_loads_no_pictures_or_tables() -> None:
+    loaded = loaded_by("import somersault as so; so.spin('furrer').linear().stable")
+    assert not loaded & {"xarray", "matplotlib", "pandas", "scipy", "sympy"}
+
+
+def test_public_names_exist() -> None:
+    for name in somersault.__all__:
+        assert getattr(somersault, name) is not None
+    with pytest.raises(AttributeError, match="nothing_of_the_kind"):
+        _ = somersault.nothing_of_the_kind

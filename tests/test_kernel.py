@@ -1,0 +1,173 @@
+"""The compiled kernel against CasADi's own evaluation of the same function."""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from somersault.dynamics import Equations, Kernel, _kernel
+from somersault.model import load
+
+
+def both(expression, *symbols, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Compiled and interpreted values, one row for each row of `at`."""
+    function = ca.Function("f", [ca.vertcat(*symbols)], [ca.densify(expression)])
+    interpreted = np.array(function.map(len(at))(at.T)).T
+    return Kernel(function)(at), interpreted
+
+
+def column(values) -> np.ndarray:
+    return np.asarray(values, float).reshape(-1, 1)
+
+
+def near_quarter_turns() -> np.ndarray:
+    """The doubles about multiples of π/2 up to 1e5, where the reduction cancels most."""
+    k = np.concatenate([np.arange(-300, 301), np.linspace(-63000, 63000, 4001).round()])
+    nearest = k * (np.pi / 2)
+    above, below = np.nextafter(nearest, np.inf), np.nextafter(nearest, -np.inf)
+    return np.concatenate([nearest, above, below, nearest + 1e-9, nearest - 1e-6])
+
+
+ANGLES = {
+    "everyday": np.linspace(-20.0, 20.0, 20001),
+    "many turns": np.random.default_rng(0).uniform(-1e5, 1e5, 50000),
+    "near quarter turns": near_quarter_turns(),
+    "tiny": np.concatenate([[0.0], np.geomspace(1e-300, 1e-3, 500), -np.geomspace(1e-300, 1, 500)]),
+}
+
+
+@pytest.mark.parametrize("where", ANGLES)
+def test_sine_and_cosine(where: str) -> None:
+    x = ca.SX.sym("x")
+    ours, theirs = both(ca.vertcat(ca.sin(x), ca.cos(x)), x, at=column(ANGLES[where]))
+    np.testing.assert_allclose(ours, theirs, rtol=1e-13, atol=0)
+
+
+def test_sine_alone_and_cosine_alone() -> None:
+    """Each shares its reduction with the other, and must not need it."""
+    x = ca.SX.sym("x")
+    at = column(np.linspace(-10, 10, 1001))
+    for function in (ca.sin, ca.cos):
+        ours, theirs = both(function(x), x, at=at)
+        np.testing.assert_allclose(ours, theirs, rtol=1e-13)
+
+
+def test_square_root() -> None:
+    x = ca.SX.sym("x")
+    at = column(np.concatenate([[0.0, 1e-300, 1e300], np.random.default_rng(1).uniform(0, 9, 999)]))
+    ours, theirs = both(ca.sqrt(x), x, at=at)
+    np.testing.assert_array_equal(ours, theirs)
+
+
+def test_arc_tangent_of_a_length() -> None:
+    """y ≥ 0 and x of either sign, steep and flat, on the axes and at the joints of the pieces."""
+    y, x = ca.SX.sym("y"), ca.SX.sym("x")
+    rng = np.random.default_rng(2)
+    angle = np.concatenate([np.linspace(0, np.pi, 4001), np.pi * np.arange(9) / 8])
+    size = 10.0 ** rng.uniform(-8, 8, len(angle))
+    round_ = np.column_stack([np.abs(size * np.sin(angle)), size * np.cos(angle)])
+    special = np.array(
+        [[0, 1], [0, -1], [1, 0], [1, 1], [1, -1], [1e-150, 1], [1e-150, -1], [1, 1e-300]]
+    )
+    ours, theirs = both(ca.atan2(y, x), y, x, at=np.concatenate([round_, special]))
+    np.testing.assert_allclose(ours, theirs, rtol=1e-13)
+
+
+def test_arithmetic() -> None:
+    """Every operation of the instruction list, some with a common denominator."""
+    x = ca.SX.sym("x", 3)
+    a, b, c = ca.vertsplit(x)
+    value = ca.vertcat(
+        a + b, a - b, a * b, a / c, b / c, 1 / c, -a, a * a, 2 * a, ca.fabs(b), ca.sign(b), 7.5, a
+    )
+    at = np.random.default_rng(3).normal(size=(500, 3))
+    at[0] = 0.0, 0.0, 1.0
+    ours, theirs = both(value, x, at=at)
+    np.testing.assert_allclose(ours, theirs, rtol=1e-15)
+
+
+def test_division_by_zero_is_not_a_number_and_no_crash() -> None:
+    x, y = ca.SX.sym("x"), ca.SX.sym("y")
+    at = np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 0.0], [1.0, -0.0]])
+    with np.errstate(all="raise"):
+        ours, _ = both(x / y, x, y, at=at)
+    np.testing.assert_array_equal(ours[:, 0], [np.inf, -np.inf, np.nan, -np.inf])
+
+
+def test_what_is_not_finite_stays_in_its_own_sample() -> None:
+    x = ca.SX.sym("x")
+    value = ca.vertcat(ca.sin(x), ca.sqrt(x), 1 / x)
+    at = column([0.5, np.nan, 2.0, np.inf, 3.0, -1.0, 4.0, 0.0])
+    ours, theirs = both(value, x, at=at)
+    finite = np.isfinite(at[:, 0]) & (at[:, 0] > 0)
+    np.testing.assert_allclose(ours[finite], theirs[finite], rtol=1e-15)
+    assert np.isnan(ours[[1, 3], 0]).all()
+    assert np.isnan(ours[[1, 5], 1]).all()
+
+
+@pytest.mark.parametrize("operation", [ca.tan, ca.exp, ca.log, ca.floor, ca.asin])
+def test_unknown_operations_are_refused(operation) -> None:
+    x = ca.SX.sym("x")
+    kernel = Kernel(ca.Function("f", [x], [operation(x)]))
+    with pytest.raises(NotImplementedError, match="has no vector form"):
+        kernel(np.ones((1, 1)))
+
+
+# ------------------------------------------------------- the same whoever asks, and how many
+
+
+@pytest.fixture(scope="module")
+def furrer() -> Kernel:
+    equations = Equations(load("furrer"))
+    return equations.kernel(equations.expression("forward_dynamics"))
+
+
+@pytest.fixture(scope="module")
+def samples(furrer: Kernel) -> np.ndarray:
+    return np.random.default_rng(4).normal(size=(5000, furrer.inputs)) * 3
+
+
+@pytest.mark.parametrize("count", [1, 7, 8, 9, 2047, 5000])
+def test_bits_do_not_depend_on_the_number_of_samples(
+    furrer: Kernel, samples: np.ndarray, count: int
+) -> None:
+    whole = furrer(samples)
+    np.testing.assert_array_equal(furrer(samples[:count]), whole[:count])
+    np.testing.assert_array_equal(furrer(samples[-count:]), whole[-count:])
+
+
+def test_bits_do_not_depend_on_company(furrer: Kernel, samples: np.ndarray) -> None:
+    whole = furrer(samples)
+    for number in (0, 1, 6, 7, 8, 4999):
+        np.testing.assert_array_equal(furrer(samples[number]), whole[number])
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3])
+def test_bits_do_not_depend_on_threads(
+    furrer: Kernel, samples: np.ndarray, threads: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert len(samples) / 8 > _kernel._WORTH_A_THREAD
+    whole = furrer(samples)
+    monkeypatch.setattr(_kernel, "_threads", lambda: threads)
+    np.testing.assert_array_equal(furrer(samples), whole)
+
+
+def test_leading_dimensions_are_kept(furrer: Kernel, samples: np.ndarray) -> None:
+    shaped = samples[:24].reshape(2, 3, 4, furrer.inputs)
+    assert furrer(shaped).shape == (2, 3, 4, furrer.outputs)
+    np.testing.assert_array_equal(furrer(shaped).reshape(24, -1), furrer(samples[:24]))
+    assert furrer(samples[:0]).shape == (0, furrer.outputs)
+
+
+def test_arguments_are_left_as_they_were(furrer: Kernel, samples: np.ndarray) -> None:
+    before = samples.copy()
+    furrer(samples)
+    np.testing.assert_array_equal(samples, before)
+    turned = np.asfortranarray(samples)
+    np.testing.assert_array_equal(furrer(turned), furrer(samples))
+
+
+def test_forward_dynamics_are_casadis(furrer: Kernel, samples: np.ndarray) -> None:
+    theirs = np.array(furrer._function.map(200)(samples[:200].T)).T
+    np.testing.assert_allclose(furrer(samples[:200]), theirs, rtol=1e-11, atol=1e-11)
