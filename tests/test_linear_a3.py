@@ -1,4 +1,4 @@
-"""The derived linear equations against those the thesis prints (chapter 4, appendix A.3)."""
+"""The derived linear equations against those the thesis prints (chapters 2 and 4, appendix A.3)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 import scipy.optimize
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from reference_a3 import (
     ATHLETES,
@@ -19,12 +19,72 @@ from reference_a3 import (
     springs,
 )
 
+from somersault.model import Body, Model
+from somersault.model._weld import as_matrix
 from somersault.stability import spin, stable_ranges
 
+ORIGIN = (0.0, 0.0, 0.0)
+TURNS = ("tilt", "somersault", "twist")
+RANKS = ("minor", "intermediate", "major")
 FIVE = ("tilt", "twist", "antisymmetric shoulder", "somersault", "symmetric shoulder")
 ANGLES = np.linspace(0, 3, 13)
 SUBSYSTEMS = {None: (0, 1, 2, 3, 4), "tilt": (0, 1, 2), "somersault": (3, 4)}
 EDGE = 1e-6  # of a stable range
+few = settings(derandomize=True, max_examples=25, deadline=None)
+spreads = st.tuples(*[st.floats(0.05, 1.0)] * 3)  # of mass along each axis
+
+
+# ------------------------------------------------------------------ one rigid body, eqs. 2.11–2.14
+
+
+@few
+@given(spreads, st.sampled_from((1, 2, 3)))
+def test_rigid_body_is_equation_2_11(spread: tuple[float, float, float], axis: int) -> None:
+    inertias = inertias_of(spread)
+    spun = spin(rigid(inertias), axis)
+    system = spun.linear()
+    first, about, last = (axis - 2) % 3, axis - 1, axis % 3  # 1, 2, 3 for a somersault
+    at = np.ix_(*[[system.coordinates.index(TURNS[i]) for i in (first, last)]] * 2)
+    i1, i2, i3 = inertias[[first, about, last]]
+    gyric = np.array([[0, -(i2 - i3 - i1)], [i2 - i3 - i1, 0]])
+    near = {"rtol": 0, "atol": 1e-9 * inertias.max()}
+    np.testing.assert_allclose(system.M[at], np.diag([i1, i3]), **near)
+    np.testing.assert_allclose(system.G[at], gyric, **near)
+    np.testing.assert_allclose(system.K[at], np.diag([i2 - i3, i2 - i1]), **near)
+    assert spun.inertia_ratios == pytest.approx({"k1": (i2 - i3) / i1, "k3": (i2 - i1) / i3})
+
+
+@few
+@given(spreads, st.sampled_from(RANKS))
+def test_rigid_body_roots_and_energy(spread: tuple[float, float, float], axis: str) -> None:
+    """Eqs. 2.12–2.14: ±i and ±√(−k1 k3), so only the intermediate axis is unstable."""
+    spun = spin(rigid(inertias_of(spread)), axis)
+    system = spun.linear()
+    product = float(np.prod(list(spun.inertia_ratios.values())))
+    root = np.emath.sqrt(-product)
+    polynomial = np.poly([1j, -1j, root, -root, 0, 0])
+    np.testing.assert_allclose(np.poly(system.roots), polynomial, rtol=0, atol=1e-9)
+    assert system.stable == (product > 0) == (axis != "intermediate")
+    grown = np.exp(2 * np.pi * np.sqrt(max(-product, 0.0)))
+    assert system.growth_per_somersault == pytest.approx(grown, rel=1e-7)
+    assert system.energy_signature == ("definite" if axis != "intermediate" else "unstable")
+    low, high = system.potential
+    assert {"minor": high < 0, "intermediate": low < 0 < high, "major": low > 0}[axis]
+
+
+def rigid(inertias: np.ndarray) -> Model:
+    return Model("rigid", True, (Body("body", -1, 1.0, ORIGIN, as_matrix(np.diag(inertias))),))
+
+
+def inertias_of(spread: tuple[float, float, float]) -> np.ndarray:
+    """Principal inertias that some body can have, none equal to another."""
+    inertias = sum(spread) - np.array(spread)
+    gaps = np.abs(np.subtract.outer(inertias, inertias))[np.triu_indices(3, 1)]
+    assume(gaps.min() > 0.02 * inertias.max())
+    return inertias
+
+
+# ------------------------------------------------------------- five degrees of freedom, A.3
 
 
 def assert_equal(name: str, angle: float) -> None:
@@ -45,7 +105,7 @@ def test_every_element_at_many_arm_angles(name: str, angle: float) -> None:
     assert_equal(name, angle)
 
 
-@settings(derandomize=True, max_examples=60, deadline=None)
+@few
 @given(st.sampled_from(sorted(ATHLETES)), st.floats(0, 3))
 def test_every_element_at_any_arm_angle(name: str, angle: float) -> None:
     assert_equal(name, angle)

@@ -43,7 +43,9 @@ def printed(model: so.Model, q: np.ndarray, w: np.ndarray, u: np.ndarray) -> tup
     return read(np.array(mass)), read(np.array(bias)).ravel()
 
 
-@pytest.mark.parametrize("name", ["book", "simplest", "furrer"])
+@pytest.mark.parametrize(
+    "name", ["book", "simplest", pytest.param("furrer", marks=pytest.mark.slow)]
+)
 def test_latex_of_free_models(name: str) -> None:
     model = so.load(name)
     equations = Equations(model)

@@ -8,33 +8,17 @@ from functools import cache
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
 from scipy.optimize import linear_sum_assignment
 from trees import random_rotation, random_tree
 
+from somersault import SomersaultError
 from somersault.model import Body, Model, load
 from somersault.model._weld import as_matrix, as_vector
-from somersault.stability import Spin, spin
+from somersault.stability import Spin, chart, root_locus, spin, stable_ranges
 
-ORIGIN = (0.0, 0.0, 0.0)
 RANKS = ("minor", "intermediate", "major")
 TURNS = ("tilt", "somersault", "twist")
 GROWS = 1e-6  # what counts as growth, in units of the spin rate
-few = settings(derandomize=True, max_examples=25, deadline=None)
-spreads = st.tuples(*[st.floats(0.05, 1.0)] * 3)  # of mass along each axis
-
-
-def rigid(inertias: np.ndarray) -> Model:
-    return Model("rigid", True, (Body("body", -1, 1.0, ORIGIN, as_matrix(np.diag(inertias))),))
-
-
-def inertias_of(spread: tuple[float, float, float]) -> np.ndarray:
-    """Principal inertias that some body can have, none equal to another."""
-    inertias = sum(spread) - np.array(spread)
-    gaps = np.abs(np.subtract.outer(inertias, inertias))[np.triu_indices(3, 1)]
-    assume(gaps.min() > 0.02 * inertias.max())
-    return inertias
 
 
 @cache
@@ -69,43 +53,6 @@ def assert_same_roots(one: np.ndarray, other: np.ndarray, tolerance: float = 1e-
     gap = np.abs(one[:, None] - other[None, :])
     allowed = np.where(np.abs(one) < 1e-5, 1e-5, tolerance * (1 + np.abs(one).max()))
     assert np.all(gap[linear_sum_assignment(gap)] < allowed)
-
-
-# ------------------------------------------------------------------ one rigid body, chapter 2
-
-
-@few
-@given(spreads, st.sampled_from((1, 2, 3)))
-def test_rigid_body_is_equation_2_11(spread: tuple[float, float, float], axis: int) -> None:
-    inertias = inertias_of(spread)
-    spun = spin(rigid(inertias), axis)
-    system = spun.linear()
-    first, about, last = (axis - 2) % 3, axis - 1, axis % 3  # 1, 2, 3 for a somersault
-    at = np.ix_(*[[system.coordinates.index(TURNS[i]) for i in (first, last)]] * 2)
-    i1, i2, i3 = inertias[[first, about, last]]
-    gyric = np.array([[0, -(i2 - i3 - i1)], [i2 - i3 - i1, 0]])
-    near = {"rtol": 0, "atol": 1e-9 * inertias.max()}
-    np.testing.assert_allclose(system.M[at], np.diag([i1, i3]), **near)
-    np.testing.assert_allclose(system.G[at], gyric, **near)
-    np.testing.assert_allclose(system.K[at], np.diag([i2 - i3, i2 - i1]), **near)
-    assert spun.inertia_ratios == pytest.approx({"k1": (i2 - i3) / i1, "k3": (i2 - i1) / i3})
-
-
-@few
-@given(spreads, st.sampled_from(RANKS))
-def test_rigid_body_roots_and_energy(spread: tuple[float, float, float], axis: str) -> None:
-    """Eqs. 2.12–2.14: ±i and ±√(−k1 k3), so only the intermediate axis is unstable."""
-    spun = spin(rigid(inertias_of(spread)), axis)
-    system = spun.linear()
-    product = float(np.prod(list(spun.inertia_ratios.values())))
-    root = np.emath.sqrt(-product)
-    assert_same_roots(system.roots, np.array([1j, -1j, root, -root, 0, 0]))
-    assert system.stable == (product > 0) == (axis != "intermediate")
-    grown = np.exp(2 * np.pi * np.sqrt(max(-product, 0.0)))
-    assert system.growth_per_somersault == pytest.approx(grown, rel=1e-7)
-    assert system.energy_signature == ("definite" if axis != "intermediate" else "unstable")
-    low, high = system.potential
-    assert {"minor": high < 0, "intermediate": low < 0 < high, "major": low > 0}[axis]
 
 
 # -------------------------------------------------------------------- energy and damping
@@ -190,8 +137,7 @@ def test_a_locked_joint_is_a_very_stiff_spring(number: int) -> None:
             gaps.append(far[np.abs(slow) > 1e-4].max())
         assert gaps[1] < 1e-4
         assert gaps[1] < 0.1 * gaps[0] + 1e-8
-    product = np.prod(list(spun.inertia_ratios.values()))
-    root = np.emath.sqrt(-product)
+    root = np.emath.sqrt(-np.prod(list(spun.inertia_ratios.values())))
     assert_same_roots(spun.linear(lock="all").roots, np.array([1j, -1j, root, -root, 0, 0]))
 
 
@@ -304,3 +250,139 @@ def test_the_system_is_a_conservative_gyric_one() -> None:
         turns = [system.coordinates.index(turn) for turn in TURNS]
         assert not system.D[turns].any()
         assert not system.K_springs[:, turns].any()
+
+
+# ------------------------------------------------------------ many at once, parts, and modes
+
+
+def test_a_chart_is_what_single_spins_say() -> None:
+    stiffness, angles = np.linspace(-1, 3, 9), np.linspace(0, 3, 7)
+    x, y = ("stiffness.shoulder", stiffness), ("pose.shoulder", angles)
+    for damping, rank in ((0.0, 2), (0.3, 2), (0.0, "major")):
+        fixed = {"damping.shoulder": damping}
+        found = chart("furrer", x, y, fixed=fixed, axis=rank, energy=True)
+        assert found.growth_rate.dims == ("pose.shoulder", "stiffness.shoulder")
+        for angle, row in zip(angles, found.growth_rate.values, strict=True):
+            spun = spin("furrer", rank, {"shoulder": angle})
+            for k, rate in zip(stiffness, row, strict=True):
+                system = spun.linear({"shoulder": k}, {"shoulder": damping})
+                at = found.sel({"pose.shoulder": angle, "stiffness.shoulder": k})
+                assert rate == pytest.approx(system.growth_rate, abs=1e-7)
+                assert bool(at.stable) == system.stable
+                assert bool(at.definite) == (system.energy_signature == "definite")
+
+
+@pytest.mark.parametrize("axis", RANKS)
+def test_a_chart_knows_that_a_rigid_maximum_is_definite(axis: str) -> None:
+    quantities = ("mass.body", [58.3]), ("pose.shoulder", [1.0])
+    found = chart("furrer", *quantities, axis=axis, lock="all", energy=True)
+    signature = spin("furrer", axis, {"shoulder": 1.0}).linear(lock="all").energy_signature
+    assert bool(found.definite) == (signature == "definite")
+
+
+def test_a_chart_over_the_body_is_what_other_bodies_do() -> None:
+    body, *arms = load("furrer").bodies
+    lengths, masses = [0.3, 0.5], [40.0, 58.3]
+    quantities = ("com.body.3", lengths), ("mass.body", masses)
+    fixed = {"pose.shoulder": 1.3, "stiffness.shoulder": 1.2}
+    found = chart("furrer", *quantities, fixed=fixed)
+    for length in lengths:
+        for mass in masses:
+            other = replace(body, mass=mass, com=(0.0, 0.0, length))
+            spun = spin(Model("other", True, (other, *arms)), 2, {"shoulder": 1.3})
+            rate = float(found.growth_rate.sel({"com.body.3": length, "mass.body": mass}))
+            assert rate == pytest.approx(spun.linear({"shoulder": 1.2}).growth_rate, abs=1e-7)
+
+
+def test_stable_ranges_end_where_stability_does() -> None:
+    spun = spin("furrer", 2, {"shoulder": 1.3})
+    along = ("stiffness.shoulder", -2.0, 4.0)
+    ((low, high),) = stable_ranges("furrer", along, fixed={"pose.shoulder": 1.3})
+    for edge, inward in ((low, 1e-6), (high, -1e-6)):
+        assert spun.linear({"shoulder": edge + inward}).stable
+        assert not spun.linear({"shoulder": edge - inward}).stable
+
+
+def test_a_root_locus_is_the_roots_one_after_the_other() -> None:
+    stiffness = np.linspace(-2, 4, 13)
+    fixed = {"pose.shoulder": 1.3, "damping.shoulder": 0.1}
+    locus = root_locus("furrer", ("stiffness.shoulder", stiffness), fixed=fixed)
+    spun = spin("furrer", 2, {"shoulder": 1.3})
+    for row, k in enumerate(stiffness):
+        roots = locus["real"].values[row] + 1j * locus["imaginary"].values[row]
+        assert_same_roots(spun.linear({"shoulder": k}, {"shoulder": 0.1}).roots, roots, 1e-7)
+
+
+def test_the_parts_are_the_whole() -> None:
+    system = spin("furrer", 2, {"shoulder": 1.3}).linear({"shoulder": 1.2})
+    parts = [system.subsystem(group[0]) for group in system.subsystems]
+    assert sorted(sum((p.coordinates for p in parts), ())) == sorted(system.coordinates)
+    assert_same_roots(system.roots, np.concatenate([part.roots for part in parts]))
+    assert system.growth_rate == pytest.approx(max(p.growth_rate for p in parts), abs=1e-8)
+    potentials = np.sort(np.concatenate([part.potential for part in parts]))
+    np.testing.assert_allclose(system.potential, potentials, atol=1e-9)
+
+
+def test_the_turn_about_the_axis_alone_is_a_part_too() -> None:
+    part = spin("furrer", 2).linear(lock="all").subsystem("somersault")
+    assert part.stable
+    assert part.energy_signature == "definite"
+    assert "stable" in repr(part)
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_modes(number: int) -> None:
+    """One for each root with Im ≥ 0, each a motion of the equations, the known two among them."""
+    system = tree(number).linear(numbers(tree(number), -1, 3), numbers(tree(number), 0, 0.2))
+    modes = {mode.name: mode for mode in system.modes}
+    still = [i for i, name in enumerate(system.coordinates) if name not in TURNS]
+    about = TURNS[system.spin.axis - 1]
+    roots = system.roots[np.argsort(np.abs(system.roots))][2:]
+    assert len(system.modes) == 1 + int(np.sum(roots.imag > -1e-9))
+    assert modes[f"{about} drift"].root == 0
+    assert modes["stroboscopic"].root == pytest.approx(1j, abs=1e-8)
+    assert np.abs(modes["stroboscopic"].shape[still]).max() < 1e-8
+    for mode in system.modes:
+        s, left = mode.root, (system.M, system.G + system.D, system.K + system.K_springs)
+        force = (left[0] * s**2 + left[1] * s + left[2]) @ mode.shape
+        assert np.abs(force).max() < 1e-7 * sum(np.abs(a).max() for a in left) * (1 + abs(s)) ** 2
+
+
+def test_an_axis_by_name_or_by_number() -> None:
+    for name, number in (("minor", 3), ("intermediate", 2), ("major", 1)):
+        by_name, by_number, by_text = (spin("furrer", a) for a in (name, number, str(number)))
+        assert by_name.axis == by_number.axis == by_text.axis == number
+        assert np.array_equal(by_name.linear().roots, by_number.linear().roots)
+
+
+# -------------------------------------------------------------------------------- mistakes
+
+SHOULDERS = "left_shoulder, right_shoulder"
+MISTAKES = {
+    "'sideways'": lambda: spin("furrer", "sideways"),
+    f"'elbow'; its joints are {SHOULDERS}": lambda: spin("furrer", 2, {"elbow": 1.0}),
+    "left_shoulder=4 ": lambda: spin("furrer", 2, {"shoulder": 4.0}),
+    "pose left_shoulder": lambda: spin("furrer", 2, {"shoulder": np.nan}),
+    "one pose": lambda: spin("furrer", 2, {"shoulder": [1.0, 2.0]}),
+    "'knee'": lambda: spin("furrer").linear({"knee": 1.0}),
+    "'neck'": lambda: spin("furrer").linear(damping={"neck": 1.0}),
+    "'toe'": lambda: spin("furrer").linear(lock=["toe"]),
+    "stiffness of left_shoulder": lambda: spin("furrer").linear({"shoulder": np.inf}),
+    "rate of 0": lambda: spin("furrer").linear(rate=0.0),
+    "rate of nan": lambda: spin("furrer").linear(rate=np.nan),
+    "'roll'; there are tilt": lambda: spin("furrer").linear().subsystem("roll"),
+    "pose.shoulder against itself": lambda: chart("furrer", *[("pose.shoulder", [1.0])] * 2),
+    "'poise.x'": lambda: chart("furrer", ("poise.x", [1.0]), ("pose.shoulder", [1.0])),
+    "mass.elbow": lambda: chart("furrer", ("mass.elbow", [1.0]), ("pose.shoulder", [1.0])),
+    "no coordinate 'yaw'": lambda: root_locus("furrer", ("pose.shoulder", [1]), subsystem="yaw"),
+    "pose.shoulder has": lambda: stable_ranges("furrer", ("pose.shoulder", 0.0, np.nan)),
+    "fixed base": lambda: spin(replace(load("furrer"), free=False)),
+}
+
+
+@pytest.mark.parametrize("told", MISTAKES)
+def test_mistakes_are_told_in_one_sentence(told: str) -> None:
+    with pytest.raises(SomersaultError) as caught:
+        MISTAKES[told]()
+    assert told in str(caught.value)
+    assert "\n" not in str(caught.value)

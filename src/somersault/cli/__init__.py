@@ -53,6 +53,9 @@ def _parser() -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):  # a Windows console would not know Ω
+            stream.reconfigure(encoding="utf-8")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("default", SomersaultWarning)

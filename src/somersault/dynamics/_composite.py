@@ -110,7 +110,7 @@ def outboard_inertia(tree: Tree, placed: Sequence[Placed]) -> list[Scalar]:
 
 
 def mass_matrix(tree: Tree, q: Sequence[Scalar]) -> Mat:
-    """M in T = ½ vᵀ M v, v = (ω, velocity of the base's centre of mass, joint speeds).
+    """M in T = ½ vᵀ M v, v = (ω, velocity of a free base's own centre of mass, joint speeds).
 
     By composite bodies (Walker & Orin 1982). Without a free base, of the joint speeds alone.
     """

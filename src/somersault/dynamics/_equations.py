@@ -29,7 +29,7 @@ from somersault.dynamics._vector import Mat, Vec, cross, matmul, scale, tilde, t
 from somersault.model._types import Model
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Expression:
     """A named quantity: its arguments (symbols, by name) and its value, a dense matrix."""
 
@@ -52,9 +52,9 @@ class Equations:
     """Forward and inverse dynamics, mass matrix, momentum and energy of one model.
 
     `parameters` names numbers that stay open, so that a sweep compiles once: "mass.BODY",
-    "com.BODY.1", "inertia.BODY.12", "position.BODY.2", "stiffness.JOINT", "rest.JOINT", "damping.JOINT"; each
-    method then takes `parameters`, (…, number of them), and uses the model's own where none
-    are given. Everything else is a constant in the compiled code.
+    "com.BODY.1", "inertia.BODY.12", "position.BODY.2", "stiffness.JOINT", "rest.JOINT",
+    "damping.JOINT"; each method then takes `parameters`, (…, number of them), and uses the
+    model's own where none are given. Everything else is a constant in the compiled code.
 
     Arguments are arrays whose leading dimensions broadcast; results have those dimensions in
     front. Each quantity is derived and compiled when it is first asked for.
@@ -82,7 +82,8 @@ class Equations:
                     "com.BODY.1, position.BODY.1, inertia.BODY.12, stiffness.JOINT, rest.JOINT and "
                     "damping.JOINT"
                 )
-        self._kernels: dict[str, Kernel] = {}
+        self._expressions: dict[str, Expression] = {}
+        self._kernels: dict[Expression, Kernel] = {}
 
     # ------------------------------------------------------------------------- symbols
 
@@ -137,8 +138,11 @@ class Equations:
             raise SomersaultError(
                 f"no quantity is called {name!r}; there are {', '.join(self.QUANTITIES)}"
             )
-        arguments, value = getattr(self, f"_{name}")()
-        return Expression(name, {**arguments, "parameters": self._p}, value)
+        if name not in self._expressions:
+            arguments, value = getattr(self, f"_{name}")()
+            whole = Expression(name, {**arguments, "parameters": self._p}, value)
+            self._expressions[name] = whole
+        return self._expressions[name]
 
     def derivative(self, name: str, argument: str) -> Expression:
         """Exact Jacobian of the expression `name` (raveled by rows) by one of its arguments."""
@@ -154,14 +158,19 @@ class Equations:
 
     def kernel(self, expression: Expression) -> Kernel:
         """Compiled form, of all arguments joined into one vector; the value raveled by rows."""
-        if expression.name not in self._kernels:
+        if expression not in self._kernels:
             joined = ca.vertcat(*expression.arguments.values())
             flat = ca.cse(ca.densify(ca.vec(expression.value.T)))
-            self._kernels[expression.name] = Kernel(ca.Function(expression.name, [joined], [flat]))
-        return self._kernels[expression.name]
+            self._kernels[expression] = Kernel(ca.Function(expression.name, [joined], [flat]))
+        return self._kernels[expression]
 
     def evaluate(self, expression: Expression, **arguments: ArrayLike) -> Array:
         """The value of an expression for arrays of its arguments, (…, rows, columns)."""
+        for name in arguments:
+            if name not in expression.arguments:
+                raise SomersaultError(
+                    f"{expression.name} takes {', '.join(expression.arguments)}, and not {name}"
+                )
         arguments.setdefault("parameters", self.values)
         arrays = []
         for name, symbol in expression.arguments.items():

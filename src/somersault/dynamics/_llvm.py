@@ -15,7 +15,8 @@ from collections.abc import Callable
 import casadi as ca
 
 LANES = 8
-_V = f"<{LANES} x double>"
+VECTOR = f"<{LANES} x double>"
+_V = VECTOR
 _I = f"<{LANES} x i64>"
 
 _TWO_OVER_PI = 0.6366197723675814
@@ -55,25 +56,33 @@ _ATAN_Q = (
 _BINARY = {ca.OP_ADD: "fadd", ca.OP_SUB: "fsub", ca.OP_MUL: "fmul"}
 
 
-def llvm_module(function: ca.Function, name: str) -> str:
-    """LLVM text with `name`(x, y), one block of lanes, and `name`_many(x, y, blocks).
+HEADER = f"""
+declare {VECTOR} @llvm.fmuladd.v{LANES}f64({VECTOR}, {VECTOR}, {VECTOR})
+declare {VECTOR} @llvm.sqrt.v{LANES}f64({VECTOR})
+declare {VECTOR} @llvm.fabs.v{LANES}f64({VECTOR})
+attributes #0 = {{ nounwind "min-legal-vector-width"="512" "prefer-vector-width"="512" }}
+"""
 
-    `function` takes one dense vector and returns one. Block b of the input is the doubles
-    x[b][input][lane]; the output likewise. Raises NotImplementedError for an operation that
-    no equation here makes.
+
+def llvm_function(function: ca.Function, name: str) -> str:
+    """LLVM text of `void name(ptr x, ptr y)` for one block of lanes; needs `HEADER` before it.
+
+    `function` takes one dense vector and returns one. The block of the input is the doubles
+    x[input][lane]; the output likewise. Raises NotImplementedError for an operation that no
+    equation here makes.
     """
-    body = _Writer(function).text()
-    n_in, n_out = function.nnz_in(0), function.nnz_out(0)
     return f"""
-declare {_V} @llvm.fmuladd.v{LANES}f64({_V}, {_V}, {_V})
-declare {_V} @llvm.sqrt.v{LANES}f64({_V})
-declare {_V} @llvm.fabs.v{LANES}f64({_V})
-
 define void @{name}(ptr noalias nocapture readonly %x, ptr noalias nocapture %y) #0 {{
-{body}
+{_Writer(function).text()}
   ret void
 }}
+"""
 
+
+def llvm_module(function: ca.Function, name: str) -> str:
+    """LLVM text with `name` as in `llvm_function`, and `name`_many(x, y, blocks) over many."""
+    n_in, n_out = function.nnz_in(0), function.nnz_out(0)
+    return f"""{HEADER}{llvm_function(function, name)}
 define void @{name}_many(ptr noalias nocapture readonly %x, ptr noalias nocapture %y, i64 %n) #0 {{
 entry:
   %any = icmp sgt i64 %n, 0
@@ -91,8 +100,6 @@ loop:
 done:
   ret void
 }}
-
-attributes #0 = {{ nounwind "min-legal-vector-width"="512" "prefer-vector-width"="512" }}
 """
 
 
@@ -100,7 +107,7 @@ def _hex(value: float) -> str:
     return "0x" + struct.pack(">d", value).hex().upper()
 
 
-def _number(value: float) -> str:
+def number(value: float) -> str:
     return "<" + ", ".join([f"double {_hex(value)}"] * LANES) + ">"
 
 
@@ -129,7 +136,7 @@ class _Writer:
             elif operation == ca.OP_OUTPUT:
                 self._store(outputs[1], self._slots[inputs[0]])
             elif operation == ca.OP_CONST:
-                self._slots[outputs[0]] = _number(f.instruction_constant(k))
+                self._slots[outputs[0]] = number(f.instruction_constant(k))
             else:
                 operands = [self._slots[slot] for slot in inputs]
                 self._slots[outputs[0]] = self._apply(operation, operands)
@@ -164,7 +171,10 @@ class _Writer:
             ca.OP_SIN: lambda: self._sine_cosine(x[0])[0],
             ca.OP_COS: lambda: self._sine_cosine(x[0])[1],
             ca.OP_ATAN2: lambda: self._atan2(x[0], x[1]),
-            ca.OP_SIGN: lambda: self._sign(x[0]),
+            ca.OP_SIGN: lambda: self._two(
+                "fsub", self._less(number(0.0), x[0]), self._less(x[0], number(0.0))
+            ),
+            ca.OP_LT: lambda: self._less(x[0], x[1]),
             ca.OP_ASSIGN: lambda: x[0],
         }
         if operation not in table:
@@ -182,14 +192,14 @@ class _Writer:
 
     def _horner(self, z: str, coefficients: tuple[float, ...]) -> str:
         """c0 + z (c1 + z (c2 + …))."""
-        value = _number(coefficients[-1])
+        value = number(coefficients[-1])
         for c in reversed(coefficients[:-1]):
-            value = self._fma(z, value, _number(c))
+            value = self._fma(z, value, number(c))
         return value
 
     def _one_over(self, a: str) -> str:
         if a not in self._inverse:
-            self._inverse[a] = self._two("fdiv", _number(1.0), a)
+            self._inverse[a] = self._two("fdiv", number(1.0), a)
         return self._inverse[a]
 
     def _where(self, condition: str, yes: str, no: str) -> str:
@@ -207,15 +217,15 @@ class _Writer:
     def _sine_cosine(self, x: str) -> tuple[str, str]:
         if x in self._sincos:
             return self._sincos[x]
-        shifted = self._fma(x, _number(_TWO_OVER_PI), _number(_ROUNDER))
+        shifted = self._fma(x, number(_TWO_OVER_PI), number(_ROUNDER))
         quarter = self._emit(f"bitcast {_V} {shifted} to {_I}")
-        turns = self._emit(f"fsub {_V} {shifted}, {_number(_ROUNDER)}")
+        turns = self._emit(f"fsub {_V} {shifted}, {number(_ROUNDER)}")
         r = x
         for part in _HALF_PI_PARTS:
-            r = self._fma(turns, _number(-part), r)
+            r = self._fma(turns, number(-part), r)
         z = self._two("fmul", r, r)
         sine = self._fma(self._two("fmul", z, r), self._horner(z, _SINE), r)
-        half = self._fma(z, _number(-0.5), _number(1.0))
+        half = self._fma(z, number(-0.5), number(1.0))
         cosine = self._fma(self._two("fmul", z, z), self._horner(z, _COSINE), half)
         odd = self._emit(f"trunc {_I} {quarter} to <{LANES} x i1>")
         s = self._signed(self._where(odd, cosine, sine), quarter)
@@ -223,11 +233,9 @@ class _Writer:
         self._sincos[x] = (s, c)
         return s, c
 
-    def _sign(self, x: str) -> str:
-        positive = self._emit(f"fcmp ogt {_V} {x}, {_number(0.0)}")
-        negative = self._emit(f"fcmp olt {_V} {x}, {_number(0.0)}")
-        below = self._where(negative, _number(-1.0), _number(0.0))
-        return self._where(positive, _number(1.0), below)
+    def _less(self, a: str, b: str) -> str:
+        below = self._emit(f"fcmp olt {_V} {a}, {b}")
+        return self._where(below, number(1.0), number(0.0))
 
     def _atan2(self, y: str, x: str) -> str:
         """atan2 for y ≥ 0, the only kind the equations make (the length of a vector part)."""
@@ -237,10 +245,10 @@ class _Writer:
         # |top / bottom| ≤ 1 here; above tan(π/8) turn by π/4 once more.
         t = self._emit(f"fdiv {_V} {top}, {bottom}")
         size = self._call("fabs", t)
-        wide = self._emit(f"fcmp ogt {_V} {size}, {_number(0.41421356237309503)}")
+        wide = self._emit(f"fcmp ogt {_V} {size}, {number(0.41421356237309503)}")
         turned = self._emit(
-            f"fdiv {_V} {self._two('fsub', size, _number(1.0))}, "
-            f"{self._two('fadd', size, _number(1.0))}"
+            f"fdiv {_V} {self._two('fsub', size, number(1.0))}, "
+            f"{self._two('fadd', size, number(1.0))}"
         )
         u = self._where(wide, turned, size)
         z = self._two("fmul", u, u)
@@ -248,11 +256,11 @@ class _Writer:
         q = self._horner(z, (*reversed(_ATAN_Q), 1.0))
         ratio = self._emit(f"fdiv {_V} {self._two('fmul', z, p)}, {q}")
         angle = self._fma(u, ratio, u)
-        quarter = self._where(wide, _number(0.7853981633974483), _number(0.0))
+        quarter = self._where(wide, number(0.7853981633974483), number(0.0))
         angle = self._two("fadd", angle, quarter)
-        negative = self._emit(f"fcmp olt {_V} {t}, {_number(0.0)}")
+        negative = self._emit(f"fcmp olt {_V} {t}, {number(0.0)}")
         angle = self._where(negative, self._emit(f"fneg {_V} {angle}"), angle)
-        behind = self._emit(f"fcmp olt {_V} {x}, {_number(0.0)}")
-        flat = self._where(behind, _number(3.141592653589793), _number(0.0))
-        offset = self._where(steep, _number(1.5707963267948966), flat)
+        behind = self._emit(f"fcmp olt {_V} {x}, {number(0.0)}")
+        flat = self._where(behind, number(3.141592653589793), number(0.0))
+        offset = self._where(steep, number(1.5707963267948966), flat)
         return self._two("fadd", angle, offset)

@@ -79,5 +79,5 @@ def _rotation_vector(quaternion: Sequence[Any]) -> Vec:
     w, x, y, z = quaternion
     length = ca.sqrt(x * x + y * y + z * z + 1e-300)
     # q and −q are one rotation: measured from the nearer of the two.
-    ratio = 2 * ca.atan2(length, ca.fabs(w)) / length * ca.sign(w)
+    ratio = 2 * ca.atan2(length, ca.fabs(w)) / length * (1 - 2 * (w < 0))
     return [ratio * x, ratio * y, ratio * z]

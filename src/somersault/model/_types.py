@@ -206,6 +206,11 @@ def _check_tree(model: Model, index: int, body: Body) -> None:
             f"{model.name}: body {body.name!r} is not part of the free body; a model in the "
             "air is one tree, so remove it or join it to the base"
         )
+    if not body.joints and not (model.free and index == 0):
+        raise SomersaultError(
+            f"{model.name}: body {body.name!r} has no joint, so it cannot move against its "
+            "parent; make the two one body"
+        )
     if model.free and index == 0 and body.joints:
         raise SomersaultError(
             f"{model.name}: the free base {body.name!r} has joints of its own; remove them"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,7 +22,7 @@ def linear_dataset(system: LinearSpin) -> xr.Dataset:
         "K": (system.K, "stiffness of the spin over its rate squared"),
         "K_springs": (system.K_springs, "stiffness of the springs over the spin rate squared"),
     }
-    data = {
+    data: dict[str, Any] = {
         name: (square, matrix, {"units": "kg m2", "long_name": long})
         for name, (matrix, long) in matrices.items()
     }

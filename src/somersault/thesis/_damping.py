@@ -36,9 +36,7 @@ _COARSE = np.linspace(0, 3, 61), np.linspace(LOW, HIGH, 121)
 def _growth(damping: float, angles: Array, stiffness: Array, axis: int = 2) -> Array:
     """Growth rates (K_sh, Γ) with damped shoulders."""
     quantities = {ANGLE: angles[None, :], STIFFNESS: stiffness[:, None], DAMPING: damping}
-    return st.growth_rates(
-        MODEL, quantities, axis=axis, subsystem=THREE if axis == 2 else None
-    )
+    return st.growth_rates(MODEL, quantities, axis=axis, subsystem=THREE if axis == 2 else None)
 
 
 def fig_4_7() -> Result:
@@ -146,14 +144,14 @@ def _draw_4_7(roots: Array, moving: Array, best: int) -> Figure:
     undamped = roots_along(SWEEP, pose=NOMINAL).real.max(-1)
     rate.plot(SWEEP, undamped, color=look.BLUE)
     rate.plot(SWEEP, moving, color=look.VERMILION)
-    rate.set(xlabel="$K_{sh}$", ylabel="largest growth rate, units of Ω", ylim=(-0.05, 1.9))
+    rate.set(xlabel="$K_{sh}$", ylabel="largest growth rate, units of Ω", ylim=(-0.05, 1.3))
     rate.set_title("Growth with and without the damper")
     rate.axhline(0, color=look.GREY, lw=0.8)
-    look.pointer(rate, (1.0, 0.0), (0.4, 1.1), "undamped:\nzero in between", look.BLUE)
+    look.pointer(rate, (1.0, 0.0), (0.7, 0.95), "undamped:\nzero in between", look.BLUE)
     look.pointer(
         rate,
         (SWEEP[best], moving[best]),
-        (1.6, 0.25 + moving[best]),
+        (2.0, 0.16),
         f"damped: never below\n{moving[best]:.3f} Ω",
         look.VERMILION,
     )
@@ -166,9 +164,7 @@ def _draw_4_7(roots: Array, moving: Array, best: int) -> Figure:
 def energy() -> Result:
     """Which stable spins are minima of the energy: why figure 4-7 comes out as it does."""
     angles, stiffness = np.linspace(0, 3, 151), np.linspace(LOW, HIGH, 301)
-    layout = st.chart(
-        MODEL, (ANGLE, angles), (STIFFNESS, stiffness), subsystem=THREE, energy=True
-    )
+    layout = st.chart(MODEL, (ANGLE, angles), (STIFFNESS, stiffness), subsystem=THREE, energy=True)
     wheel = st.chart(MODEL, (ANGLE, angles), (STIFFNESS, stiffness), axis=1, energy=True)
     rows = [
         (
@@ -184,10 +180,10 @@ def energy() -> Result:
         "momentum is a minimum, so the motion stays near it and dampers only help; “gyroscopic”, "
         "the energy is a saddle and Coriolis forces alone hold the motion there; “unstable”.",
         "Every stable layout somersault is gyroscopic: twist has negative stiffness (k22 = I₂ − I₁ "
-        "< 0) that no shoulder spring can lift. Of its two arm–body oscillations the slow one has "
-        "negative energy, so a damper that takes energy away makes it larger. That is why figure "
-        "4-7 has no stable spring. Where the two oscillations meet, energies of opposite sign "
-        "merge and the lower edge of figure 4-10 lies. The same athlete turning cartwheels about "
+        "< 0) that no shoulder spring can lift. Of its two arm–body oscillations one has negative "
+        f"energy, so a damper that takes energy away makes it larger. At Γ = 1.3, K_sh = 1: "
+        f"{_signs()}. That is why figure 4-7 has no stable spring. Where the two oscillations, of "
+        "opposite energy, meet lies the lower edge of figure 4-10. The same athlete turning cartwheels about "
         "the axis of greatest inertia is definite above a certain stiffness, and damping does no "
         "harm there.",
         (),
@@ -228,9 +224,7 @@ def _draw_energy(layout, wheel) -> Figure:  # type: ignore[no-untyped-def]
     low_left.set_ylabel("largest growth rate, units of Ω")
     edge = edges(np.array([NOMINAL]))
     middle = float(edge.lower3[0] + edge.upper3[0]) / 2
-    look.pointer(
-        left, (1.5, 0.75), (1.75, 2.4), "gyroscopic:\ndamping destroys it", look.VERMILION
-    )
+    look.pointer(left, (1.5, 0.75), (1.75, 2.4), "gyroscopic:\ndamping destroys it", look.VERMILION)
     look.label(left, 0.2, 3.0, "unstable", look.GREY)
     look.label(right, 0.9, 2.6, "definite: damping does no harm", look.GREEN)
     look.label(right, 0.3, -1.2, "unstable", look.GREY)
@@ -242,13 +236,23 @@ def _draw_energy(layout, wheel) -> Figure:  # type: ignore[no-untyped-def]
         "damped",
         look.VERMILION,
     )
-    look.label(low_right, 1.2, 0.25, "damped and undamped: no growth", look.BLACK)
+    look.label(low_right, 0.3, 0.18, "damped and undamped: no growth", look.BLACK)
     return made
 
 
-def slow_mode_energy(angle: float, stiffness: float) -> list[tuple[float, int]]:
-    """Frequency and sign of energy of the oscillations of the 3-d.o.f. subsystem."""
-    part = at(angle).spin.linear({"shoulder": stiffness}).subsystem(THREE)
-    return [(mode.root.imag, mode.energy) for mode in part.modes if mode.energy]
-
-
+def _signs() -> str:
+    """The two oscillations at K_sh = 1: frequency, sign of energy, and what a light damper does."""
+    spin = at(NOMINAL).spin
+    still, damped = (
+        spin.linear({"shoulder": 1.0}, {"shoulder": b}).subsystem(THREE) for b in (0.0, 0.01)
+    )
+    words = []
+    for mode in still.modes:
+        if mode.energy:
+            near = damped.roots[np.argmin(np.abs(damped.roots - mode.root))]
+            sign = "positive" if mode.energy > 0 else "negative"
+            words.append(
+                f"the one at {mode.root.imag:.2f} Ω has {sign} energy and, damped by "
+                f"b/(Ω I) = 0.01, {'grows' if near.real > 0 else 'decays'} at {abs(near.real):.4f} Ω"
+            )
+    return "; ".join(words)

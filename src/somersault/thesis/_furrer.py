@@ -99,14 +99,15 @@ def _exact(angle: float) -> tuple[float, float, float, float, float]:
     b and c linear in K_sh. All roots are imaginary where a, b, c > 0 and b² > 4 a c.
     """
     whole = at(angle)
-    three, two = whole.subsystem(THREE), whole.subsystem(TWO)
+    m3, g3, k3 = (x[:3, :3] for x in (whole.M, whole.G, whole.K))
+    m2, g2, k2 = (x[3:, 3:] for x in (whole.M, whole.G, whole.K))
     scale = 2 * shoulder_inertia()
-    sprung = three.K.copy()
+    sprung = k3.copy()
     sprung[2, 2] += scale
-    a = np.linalg.det(three.M)
+    a = np.linalg.det(m3)
     (b0, c0), (b1, c1) = (
-        (np.linalg.det(three.M + three.G + k) / 2 - a - np.linalg.det(k), np.linalg.det(k))
-        for k in (three.K, sprung)
+        (np.linalg.det(m3 + g3 + k) / 2 - a - np.linalg.det(k), np.linalg.det(k))
+        for k in (k3, sprung)
     )
     b, c = np.array([b0, b1 - b0]), np.array([c0, c1 - c0])
     upper = -c[0] / c[1]  # a root at the origin: c falls as K_sh rises
@@ -116,9 +117,9 @@ def _exact(angle: float) -> tuple[float, float, float, float, float]:
     lower = collisions[-1].real if np.isreal(collisions[-1]) else -np.inf
     middle = (lower + upper) / 2
     exists = lower < upper and b[0] + b[1] * middle > 0 and c[0] + c[1] * middle > 0
-    lower2 = -(two.K[1, 1] + two.G[0, 1] ** 2 / two.M[0, 0]) / scale
-    rule = -three.K[2, 2] / scale
-    arm_term = three.K[0, 2] ** 2 / (three.K[0, 0] * scale)
+    lower2 = -(k2[1, 1] + g2[0, 1] ** 2 / m2[0, 0]) / scale
+    rule = -k3[2, 2] / scale
+    arm_term = k3[0, 2] ** 2 / (k3[0, 0] * scale)
     return lower if exists else np.nan, upper if exists else np.nan, lower2, rule, arm_term
 
 

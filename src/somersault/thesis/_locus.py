@@ -241,7 +241,8 @@ def _draw_4_6(roots: Array, low: float, high: float) -> Figure:
     ax = made.add_subplot(title="Roots at Γ = 1.3 rad, undamped")
     dots = charts.locus(ax, SWEEP, roots, size=9, arrows=(-1.0, 0.45, 2.5))
     charts.stroboscopic(ax)
-    look.label(ax, 1.32, roots[0].imag.max(), "$K_{sh}$ = −2", look.GREY)
+    corner = roots[0][np.argmax(roots[0].real + roots[0].imag)]
+    look.label(ax, corner.real + 0.08, corner.imag - 0.1, "$K_{sh}$ = −2", look.GREY)
     end = roots[-1]
     look.label(ax, 0.12, end.imag.max(), "$K_{sh}$ = 4: arm against body")
     look.label(ax, 0.5, 0.17, "$K_{sh}$ = 4")
@@ -263,10 +264,10 @@ def fig_4_8() -> Result:
         text = f"{edge.lower3[i]:.3f} to {edge.upper3[i]:.3f}" if some else "none"
         rows.append((f"{angle:.1f}", text))
     loci = [roots_along(SWEEP[::3], pose=float(angle)) for angle in PANELS]
-    agree = all(
-        bool((np.abs(r.real).max(-1) < 1e-6).any()) == some or edge.upper3[i] - edge.lower3[i] < 0.03
-        for i, (r, some) in enumerate(zip(loci, stable, strict=True))
-    )
+    imaginary = [np.abs(r.real).max(-1) < 1e-6 for r in loci]
+    inside = [
+        (edge.lower3[i] < SWEEP[::3]) & (edge.upper3[i] > SWEEP[::3]) for i in range(len(PANELS))
+    ]
     claims = (
         statement(
             "fig4-8.some",
@@ -275,9 +276,10 @@ def fig_4_8() -> Result:
             "certain combinations",
             f"at {sum(stable)} of {len(PANELS)} arm angles: "
             + ", ".join(f"{a:.1f}" for a, some in zip(PANELS, stable, strict=True) if some),
-            0 < sum(stable) < len(PANELS) and agree,
+            0 < sum(stable) < len(PANELS) and np.array_equal(imaginary, inside),
             "Eight panels from 0.0 (top left) to 2.8 rad (bottom centre) are steps of 0.4 rad. At "
-            "2.4 rad the range lies at negative K_sh and is 0.017 wide.",
+            f"2.4 rad the range lies at negative K_sh and is {edge.upper3[6] - edge.lower3[6]:.3f} "
+            "wide.",
         ),
         statement(
             "fig4-8.symmetric",
@@ -315,7 +317,7 @@ def _draw_4_8(loci: list[Array], rows: list[tuple[str, str]]) -> Figure:
             ax,
             0.03,
             0.03,
-            f"stable: {text}",
+            "stable: none" if text == "none" else f"stable:\n{text}",
             look.BLUE if text != "none" else look.VERMILION,
             transform=ax.transAxes,
             va="bottom",
@@ -328,5 +330,3 @@ def _draw_4_8(loci: list[Array], rows: list[tuple[str, str]]) -> Figure:
     made.supxlabel("real part (growth), units of Ω", fontsize=10)
     made.supylabel("imaginary part, units of Ω", fontsize=10)
     return made
-
-

@@ -201,7 +201,7 @@ def _draw_4_5(angles: Array, k1: Array, k3: Array) -> Figure:
     charts.growth_curves(near, (2.8, 2.9, 3.0, 3.1), (0.9, 0.83, 0.77, 0.72))
     near.plot(k1, k3, color=look.VERMILION)
     near.set(xlim=(0.64, 0.95), ylim=(-0.91, -0.63), title="The same, nearer", xlabel="$k_1$")
-    for angle in (0.0, 0.5, 1.0, 1.3, 1.6, 2.0, 2.5, 3.0):
+    for angle in (0.0, 0.5, 1.0, 1.3, 2.0, 2.5, 3.0):
         i = int(np.argmin(np.abs(angles - angle)))
         near.plot(k1[i], k3[i], "o", color=look.VERMILION, ms=5)
         rising = angle < 1.5  # the branch on the left, labelled on its left
@@ -209,5 +209,5 @@ def _draw_4_5(angles: Array, k1: Array, k3: Array) -> Figure:
         words = f"Γ = {angle:g}" if angle in (0.0, 3.0) else f"{angle:g}"
         look.label(near, x, y, words, look.VERMILION, ha="right" if rising else "left")
     near.plot(0.65, -0.87, "x", color=look.BLUE, ms=8, mew=2)
-    look.label(near, 0.645, -0.884, "printed for 1.3", look.BLUE)
+    look.label(near, 0.645, -0.852, "printed for 1.3", look.BLUE)
     return made

@@ -19,15 +19,7 @@ def chart_axes(ax: Axes, title: str = "") -> None:
     ax.set_ylabel("shoulder stiffness $K_{sh}$ = k/(Ω² $I_{sh}$)")
     ax.axhline(0, color=GREY, lw=0.6, zorder=0)
     for angle, name in ((0.0, "hands at thighs"), (np.pi / 2, "arms straight out")):
-        ax.annotate(
-            name,
-            (angle + 0.02, -2),
-            (0, 4),
-            textcoords="offset points",
-            color=GREY,
-            fontsize=8,
-            ha="left" if angle == 0 else "center",
-        )
+        label(ax, angle + 0.03, -1.88, name, GREY, fontsize=8)
     ax.axvline(np.pi / 2, color=GREY, lw=0.6, ls=":", zorder=0)
 
 

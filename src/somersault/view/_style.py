@@ -19,8 +19,7 @@ LIGHT_TO_DARK = ("#b9d3ee", "#5e9bd1", "#1f5fa0", "#0a2342")  # one hue, by dark
 _SETTINGS: dict[str, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 10.0,
-    "axes.titlesize": 11.0,
-    "axes.titleweight": "bold",
+    "axes.titlesize": 10.5,
     "axes.titlelocation": "left",
     "axes.spines.top": False,
     "axes.spines.right": False,
