@@ -266,9 +266,9 @@ def _rates(equations: Equations, name: str, state: State, a: np.ndarray) -> np.n
     dv = a.copy()
     if equations.model.free:  # of the components: less what turning axes make
         dv[3:6] -= np.cross(state.v[:3], state.v[3:6])
-    by_q = equations.evaluate(equations.derivative(name, "q"), q=state.q, v=state.v)
     if name == "spring_energy":
-        return by_q @ dq
+        return equations.evaluate(equations.derivative(name, "q"), q=state.q) @ dq
+    by_q = equations.evaluate(equations.derivative(name, "q"), q=state.q, v=state.v)
     by_v = equations.evaluate(equations.derivative(name, "v"), q=state.q, v=state.v)
     return by_q @ dq + by_v @ dv
 

@@ -121,17 +121,6 @@ def fig_4_19() -> Result:
             ", ".join(f"{100 * s:.0f}" for s in right) + " %",
             bool(np.all(np.diff(right) >= 0)),
         ),
-        statement(
-            "fig4-19.third",
-            "Figure 4-19",
-            "and in the third quadrant (k1 < 0, k3 < 0)",
-            "easier with larger arms",
-            ", ".join(f"{100 * s:.0f}" for s in left) + " %",
-            bool(np.all(np.diff(left) >= 0)),
-            "The thesis speaks of both bottom quadrants together, where it holds. By itself the "
-            "third, in which a rigid body is stable without any arm, first loses: a small arm that "
-            "its spring barely holds (K_sh = −kl1) destabilises it.",
-        ),
     )
     rows = tuple(
         (f"{r:g}", f"{100 * s:.1f} %", f"{100 * a:.1f} %", f"{100 * b:.1f} %")
@@ -141,7 +130,10 @@ def fig_4_19() -> Result:
         "Stable bodies in the k1–k3 square for nine sizes of arm, kl1 = −1, K_sh = 1.0: the larger "
         "I_rel, the easier it is to stabilise the bottom two quadrants.",
         f"The stable share of the bottom two quadrants grows from {100 * shares[0]:.0f} to "
-        f"{100 * shares[-1]:.0f} %. Grey hatching marks bodies that could not carry so large an arm.",
+        f"{100 * shares[-1]:.0f} %, never falling. By itself the third quadrant (k1, k3 < 0), where a "
+        f"rigid body needs no arm to be stable, first loses, from {100 * left[0]:.0f} to "
+        f"{100 * min(left):.0f} %: at K_sh = −kl1 nothing but the body's turning holds a small arm. "
+        "Hatching marks bodies that could not carry so large an arm.",
         claims,
         _draw(panels, [f"$I_{{rel}}$ = {r:g}" for r in _RELATIVE], shares, None),
         Table(("I_rel", "both bottom quadrants", "fourth", "third"), rows),
