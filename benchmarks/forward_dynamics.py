@@ -24,7 +24,7 @@ from gymnast import gymnast
 from others import mujoco_timer, pinocchio_timers, state_of
 
 from somersault.dynamics import Equations
-from somersault.dynamics._kernel import _threads
+from somersault.dynamics._kernel import threads as threads_here
 from somersault.model import Model, load
 
 TARGETS = {"layout": 60.0, "gymnast": 30.0}
@@ -54,7 +54,7 @@ def measured(timers: dict[str, Callable[[], float]], rounds: int) -> dict[str, d
 
 def benchmark(model: Model, rounds: int) -> dict:
     """Everything about one model."""
-    equations, threads = Equations(model), _threads()
+    equations, threads = Equations(model), threads_here()
     state = state_of(model)
     q, v = state.q, state.v
     whole = ours.forward_dynamics(equations)
@@ -133,8 +133,8 @@ def main() -> None:
     parser.add_argument("--only", help="layout, gymnast or humanoid")
     options = parser.parse_args()
     before = os.getloadavg() if hasattr(os, "getloadavg") else None
-    report: dict = {"threads": _threads(), "load_before": before, "models": {}}
-    print(f"{_threads()} threads; load of the machine before: {before}", flush=True)
+    report: dict = {"threads": threads_here(), "load_before": before, "models": {}}
+    print(f"{threads_here()} threads; load of the machine before: {before}", flush=True)
     for name, model in models().items():
         if options.only in (None, name):
             report["models"][name] = benchmark(model, options.rounds)

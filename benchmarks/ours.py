@@ -14,7 +14,7 @@ import casadi as ca
 import numpy as np
 
 from somersault.dynamics import Equations, Kernel
-from somersault.dynamics._kernel import _compile, aligned
+from somersault.dynamics._kernel import aligned, compiled
 from somersault.dynamics._llvm import LANES
 
 _COUNTED = (ca.OP_ADD, ca.OP_SUB, ca.OP_MUL, ca.OP_SQ, ca.OP_TWICE, ca.OP_DIV, ca.OP_INV)
@@ -203,7 +203,7 @@ def _peak_engine():
         for k in range(_CHAINS)
     ]
     newline = "\n"
-    return _compile(f"""
+    return compiled(f"""
 declare {vector} @llvm.fma.v{LANES}f64({vector}, {vector}, {vector})
 define void @peak(ptr %x, ptr %y, i64 %n) #0 {{
 entry:

@@ -149,7 +149,7 @@ def test_bits_do_not_depend_on_threads(
 ) -> None:
     assert len(samples) / 8 > _kernel._WORTH_A_THREAD
     whole = furrer(samples)
-    monkeypatch.setattr(_kernel, "_threads", lambda: threads)
+    monkeypatch.setattr(_kernel, "threads", lambda: threads)
     np.testing.assert_array_equal(furrer(samples), whole)
 
 

@@ -376,7 +376,9 @@ MISTAKES = {
     "mass.elbow": lambda: chart("furrer", ("mass.elbow", [1.0]), ("pose.shoulder", [1.0])),
     "no coordinate 'yaw'": lambda: root_locus("furrer", ("pose.shoulder", [1]), subsystem="yaw"),
     "pose.shoulder has": lambda: stable_ranges("furrer", ("pose.shoulder", 0.0, np.nan)),
-    "fixed base": lambda: spin(replace(load("furrer"), free=False)),
+    "fixed base": lambda: spin(
+        Model("post", False, (replace(load("simplest").bodies[1], parent=-1),))
+    ),
 }
 
 

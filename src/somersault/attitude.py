@@ -4,6 +4,9 @@ Attitude is the 2-1-3 sequence of Playter (1994), eq. 2.2: somersault Φ about t
 axis, then tilt Θ about the carried 1 axis, then twist Ψ about the body's 3 axis. `C_bi`
 takes inertial components to body components. Quaternions are scalar first and turn body
 components into inertial ones, so `matrix_from_quaternion(q)` is `C_bi` transposed.
+
+Angles are in radians, in the order (Φ, Θ, Ψ). Everything works on stacks: the last axis (the
+last two of matrices) holds the components, those before it are carried along.
 """
 
 from __future__ import annotations
@@ -12,16 +15,203 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._array import Array
+from somersault._errors import SomersaultError
+
+SINGULAR = 1e-15  # cos Θ below which somersault and twist are told apart by convention
+
+
+def direction_cosines(somersault: ArrayLike, tilt: ArrayLike, twist: ArrayLike) -> Array:
+    """C_bi (…, 3, 3) of eq. 2.2, from angles (…) in rad that broadcast together."""
+    s, t, w = np.broadcast_arrays(*(np.asarray(x, float) for x in (somersault, tilt, twist)))
+    (sf, cf), (st, ct), (sp, cp) = ((np.sin(x), np.cos(x)) for x in (s, t, w))
+    return _matrix(
+        [
+            [cp * cf + sp * st * sf, sp * ct, -cp * sf + sp * st * cf],
+            [-sp * cf + cp * st * sf, cp * ct, sp * sf + cp * st * cf],
+            [ct * sf, -st, ct * cf],
+        ]
+    )
 
 
 def matrix_from_quaternion(quaternion: ArrayLike) -> Array:
     """Rotation matrix (…, 3, 3) of unit quaternions (…, 4)."""
     w, x, y, z = np.moveaxis(np.asarray(quaternion, float), -1, 0)
+    return _matrix(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def quaternion_from_matrix(matrix: ArrayLike) -> Array:
+    """Unit quaternions (…, 4) of rotation matrices (…, 3, 3), with w ≥ 0.
+
+    Each is read from the largest of w², x², y², z² (Shepperd), so half turns are as exact
+    as small ones.
+    """
+    r = np.asarray(matrix, float)
+    xx, yy, zz = r[..., 0, 0], r[..., 1, 1], r[..., 2, 2]
+    wx, wy, wz = (r[..., j, i] - r[..., i, j] for i, j in ((1, 2), (2, 0), (0, 1)))
+    yz, zx, xy = (r[..., j, i] + r[..., i, j] for i, j in ((1, 2), (2, 0), (0, 1)))
+    products = _matrix(  # 4 q qᵀ
+        [
+            [1 + xx + yy + zz, wx, wy, wz],
+            [wx, 1 + xx - yy - zz, xy, zx],
+            [wy, xy, 1 - xx + yy - zz, yz],
+            [wz, zx, yz, 1 - xx - yy + zz],
+        ]
+    )
+    largest = np.argmax(np.diagonal(products, axis1=-2, axis2=-1), -1)
+    row = np.take_along_axis(products, largest[..., None, None], -2)[..., 0, :]
+    row = row / np.linalg.norm(row, axis=-1, keepdims=True)
+    return np.where(row[..., :1] < 0, -row, row)
+
+
+def quaternion_product(first: ArrayLike, second: ArrayLike) -> Array:
+    """p q (…, 4) of quaternions (…, 4): the turn q, then the turn p."""
+    p, q = np.asarray(first, float), np.asarray(second, float)
+    real = p[..., 0] * q[..., 0] - np.sum(p[..., 1:] * q[..., 1:], -1)
+    parts = p[..., :1] * q[..., 1:] + q[..., :1] * p[..., 1:] + np.cross(p[..., 1:], q[..., 1:])
+    return np.concatenate([real[..., None], parts], -1)
+
+
+def quaternion_conjugate(quaternion: ArrayLike) -> Array:
+    """The inverse turn (…, 4) of unit quaternions (…, 4)."""
+    return np.asarray(quaternion, float) * [1.0, -1.0, -1.0, -1.0]
+
+
+def quaternion_from_angles(somersault: ArrayLike, tilt: ArrayLike, twist: ArrayLike) -> Array:
+    """Unit quaternions (…, 4) from angles (…) in rad; continuous in the angles."""
+    halves = np.broadcast_arrays(*(0.5 * np.asarray(x, float) for x in (somersault, tilt, twist)))
+    (sf, cf), (st, ct), (sp, cp) = ((np.sin(x), np.cos(x)) for x in halves)
     return np.stack(
         [
-            np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], -1),
-            np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)], -1),
-            np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], -1),
+            cf * ct * cp + sf * st * sp,
+            cf * st * cp + sf * ct * sp,
+            sf * ct * cp - cf * st * sp,
+            cf * ct * sp - sf * st * cp,
         ],
-        -2,
+        -1,
     )
+
+
+def angles_from_quaternion(quaternion: ArrayLike) -> Array:
+    """(Φ, Θ, Ψ) (…, 3) of quaternions (…, 4): Θ in [−π/2, π/2], Φ and Ψ in [−π, π].
+
+    The angles always give the attitude back to rounding. At Θ = ±π/2 only Φ ∓ Ψ is an
+    attitude: there the twist is 0 and the somersault has it all.
+    """
+    half_sum, half_difference, tilt, free = _halves(np.asarray(quaternion, float))
+    high, low = free & (tilt > 0), free & (tilt < 0)
+    half_sum = np.where(high, half_difference, half_sum)
+    half_difference = np.where(low, half_sum, half_difference)
+    return _from_halves(half_sum, half_difference, tilt)
+
+
+def angles_from_matrix(cosines: ArrayLike) -> Array:
+    """(Φ, Θ, Ψ) (…, 3) of direction cosines C_bi (…, 3, 3), as `angles_from_quaternion`."""
+    c = np.asarray(cosines, float)
+    return angles_from_quaternion(quaternion_from_matrix(np.swapaxes(c, -1, -2)))
+
+
+def body_rates(angles: ArrayLike, rates: ArrayLike) -> Array:
+    """ω (…, 3), rad/s in body axes, from (Φ, Θ, Ψ) and their rates (…, 3): eq. 2.4."""
+    _, tilt, twist = np.moveaxis(np.asarray(angles, float), -1, 0)
+    somersaulting, tilting, twisting = np.moveaxis(np.asarray(rates, float), -1, 0)
+    across = np.cos(tilt) * somersaulting
+    return np.stack(
+        [
+            np.cos(twist) * tilting + np.sin(twist) * across,
+            -np.sin(twist) * tilting + np.cos(twist) * across,
+            twisting - np.sin(tilt) * somersaulting,
+        ],
+        -1,
+    )
+
+
+def angle_rates(angles: ArrayLike, omega: ArrayLike) -> Array:
+    """(Φ̇, Θ̇, Ψ̇) (…, 3), rad/s, from (Φ, Θ, Ψ) and ω (…, 3) in body axes: eq. 2.3.
+
+    As the inverse of eq. 2.4, Φ̇ and Ψ̇ hold 1/cos Θ and tan Θ (where 2.3 reads as products
+    with cos Θ, fraction bars are lost). They grow without bound towards Θ = ±π/2.
+    """
+    _, tilt, twist = np.moveaxis(np.asarray(angles, float), -1, 0)
+    w1, w2, w3 = np.moveaxis(np.asarray(omega, float), -1, 0)
+    somersaulting = (np.sin(twist) * w1 + np.cos(twist) * w2) / np.cos(tilt)
+    tilting = np.cos(twist) * w1 - np.sin(twist) * w2
+    return np.stack([somersaulting, tilting, w3 + np.sin(tilt) * somersaulting], -1)
+
+
+def unwrapped_angles(quaternions: ArrayLike) -> Array:
+    """(Φ, Θ, Ψ) (…, time, 3) along paths of attitudes (…, time, 4), through any number of turns.
+
+    Every attitude is (Φ, Θ, Ψ) and also (Φ + π, π − Θ, Ψ + π), each plus whole turns. The
+    first sample has Θ in [−π/2, π/2]; each further one is the representation nearest the
+    sample before it. So tilt runs on through ±π/2, and a body that tilts head over heels has
+    Φ and Ψ at rest. A sample at Θ = ±π/2 itself keeps the sum or difference of Φ and Ψ that
+    is free there from its neighbour.
+
+    Samples must be less than a quarter turn apart and, where a path goes by the singularity,
+    closer than it: one that goes by between two samples is taken to go through, which is the
+    same attitude but may count a turn of somersault and of twist differently.
+
+    Raises `SomersaultError` where an attitude is not finite.
+    """
+    q = np.asarray(quaternions, float)
+    if not np.all(np.isfinite(q)):
+        raise SomersaultError("Attitudes along a path must be finite; remove the others first.")
+    half_sum, half_difference, tilt, free = _halves(q)
+    half_sum = _kept(half_sum, free & (tilt > 0))
+    half_difference = _kept(half_difference, free & (tilt < 0))
+    angles = _from_halves(half_sum, half_difference, tilt)
+    step = np.diff(angles, axis=-2)
+    other = step + np.pi
+    other[..., 1] = np.pi - angles[..., 1:, 1] - angles[..., :-1, 1]
+    # Changing both samples to their second representation keeps their distance, so whether
+    # a step crosses over does not depend on the representation it starts from.
+    crosses = np.sum(_wrapped(other) ** 2, -1) < np.sum(_wrapped(step) ** 2, -1)
+    first = np.zeros((*crosses.shape[:-1], 1), int)
+    second = np.concatenate([first, np.cumsum(crosses, -1)], -1) % 2 == 1
+    turned = angles + np.pi
+    turned[..., 1] = np.pi - angles[..., 1]
+    return np.unwrap(np.where(second[..., None], turned, angles), axis=-2)
+
+
+def _matrix(rows: list[list[Array]]) -> Array:
+    return np.stack([np.stack(row, -1) for row in rows], -2)
+
+
+def _wrapped(angle: Array) -> Array:
+    """The same angles in [−π, π]."""
+    return angle - 2 * np.pi * np.round(angle / (2 * np.pi))
+
+
+def _halves(q: Array) -> tuple[Array, Array, Array, Array]:
+    """(Φ + Ψ)/2, (Φ − Ψ)/2, Θ, and whether one of the halves is free (Θ = ±π/2).
+
+    From w ± x and y ∓ z, which are the cosine and sine of (Φ ∓ Ψ)/2 times cos Θ/2 ± sin Θ/2:
+    no digits are lost near the singularity.
+    """
+    w, x, y, z = np.moveaxis(q, -1, 0)
+    plus, minus = np.hypot(w + x, y - z), np.hypot(w - x, y + z)
+    tilt = 2 * np.arctan2(plus - minus, plus + minus)
+    free = np.minimum(plus, minus) <= SINGULAR * np.maximum(plus, minus)
+    return np.arctan2(y + z, w - x), np.arctan2(y - z, w + x), tilt, free
+
+
+def _from_halves(half_sum: Array, half_difference: Array, tilt: Array) -> Array:
+    turns = _wrapped(np.stack([half_sum + half_difference, half_sum - half_difference], -1))
+    return np.stack([turns[..., 0], tilt, turns[..., 1]], -1)
+
+
+def _kept(values: Array, missing: Array) -> Array:
+    """Values (…, time) with missing ones copied from before them, or at the start from after."""
+    if not missing.any():
+        return values
+    steps = np.arange(values.shape[-1])
+    before = np.maximum.accumulate(np.where(missing, -1, steps), -1)
+    after = np.minimum.accumulate(np.where(missing, len(steps), steps)[..., ::-1], -1)[..., ::-1]
+    source = np.where(before < 0, np.where(after < len(steps), after, steps), before)
+    return np.take_along_axis(values, source, -1)

@@ -12,8 +12,8 @@ written as zero and never computed.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from somersault.dynamics._motion import Placed, Rates, joint_vector, place, rates
 from somersault.dynamics._tree import Link, Tree
@@ -67,24 +67,42 @@ def forward_dynamics(
     speeds: Sequence[Scalar],
     torques: Sequence[Scalar],
     gravity: Vec,
+    driven: Mapping[int, Scalar] | None = None,
 ) -> tuple[Vec, Vec, list[Scalar]]:
     """Angular acceleration of a free base, acceleration of its centre of mass, of the joints.
 
     All in the base's axes (a fixed base: the ground's, and the first two are zero). `torques`
-    act at the joints, `gravity` (m/s²) on everything.
+    act at the joints, `gravity` (m/s²) on everything. `driven` holds the accelerations of the
+    joint speeds that are prescribed, by place; a ball is driven in all three or in none.
     """
+    driven = driven or {}
     placed = place(tree, q)
-    moving = rates(placed, omega, speeds)
+    moving = [
+        _driven(link, motion, driven)
+        for link, motion in zip(tree.links, rates(placed, omega, speeds), strict=True)
+    ]
     bodies = [_rigid(link, motion) for link, motion in zip(tree.links, moving, strict=True)]
     gains: list[_Gain | None] = [None] * len(bodies)
     for index in range(len(bodies) - 1, -1, -1):
         link = tree.links[index]
         if link.joint is None:
             continue
-        gains[index] = _project(link, bodies[index], moving[index], list(torques[link.speeds]))
+        if link.speeds.start not in driven:
+            gains[index] = _project(link, bodies[index], list(torques[link.speeds]))
+        _carry(bodies[index], moving[index])
         if link.parent >= 0:
             _hang(bodies[link.parent], placed[index], bodies[index])
-    return _accelerations(tree, placed, moving, bodies, gains, gravity)
+    return _accelerations(tree, placed, moving, bodies, gains, gravity, driven)
+
+
+def _driven(link: Link, motion: Rates, driven: Mapping[int, Scalar]) -> Rates:
+    """A prescribed joint's own acceleration is known, as those that rates make are."""
+    if link.joint is None or link.speeds.start not in driven:
+        return motion
+    own = joint_vector(link, [driven.get(k, 0.0) for k in range(link.speeds.stop)])
+    if link.joint.kind == "slide":
+        return replace(motion, pull=vadd(motion.pull, own))
+    return replace(motion, spin=vadd(motion.spin, own))
 
 
 def _rigid(link: Link, motion: Rates) -> _Articulated:
@@ -100,19 +118,21 @@ def _rigid(link: Link, motion: Rates) -> _Articulated:
     )
 
 
-def _project(link: Link, body: _Articulated, motion: Rates, torques: list[Scalar]) -> _Gain:
+def _project(link: Link, body: _Articulated, torques: list[Scalar]) -> _Gain:
     """Take the joint's own freedom out of `body`; what is left is what its parent feels."""
     joint = link.joint
     assert joint is not None
     if joint.kind == "ball":
-        gain = _project_ball(joint.armature, body, torques)
-    else:
-        gain = _project_axis(link, body, torques[0])
+        return _project_ball(joint.armature, body, torques)
+    return _project_axis(link, body, torques[0])
+
+
+def _carry(body: _Articulated, motion: Rates) -> None:
+    """Add the load of the accelerations that are known to the bias."""
     body.n = vadd(body.n, matvec(body.moment, motion.spin), matvec(body.coupling, motion.pull))
     body.f = vadd(
         body.f, matvec(transpose(body.coupling), motion.spin), matvec(body.mass, motion.pull)
     )
-    return gain
 
 
 def _project_axis(link: Link, body: _Articulated, torque: Scalar) -> _Gain:
@@ -226,6 +246,7 @@ def _accelerations(
     bodies: list[_Articulated],
     gains: list[_Gain | None],
     gravity: Vec,
+    driven: Mapping[int, Scalar],
 ) -> tuple[Vec, Vec, list[Scalar]]:
     """Outward again: the base's acceleration, then each joint's in turn.
 
@@ -250,7 +271,11 @@ def _accelerations(
         alpha = vadd(at.turn.into(alpha_p), motion.spin)
         a = vadd(at.turn.into(vadd(a_p, cross(alpha_p, at.position))), motion.pull)
         gain = gains[index]
-        assert gain is not None
+        if gain is None:  # prescribed: its own acceleration is in spin and pull already
+            joints[link.speeds] = [driven[k] for k in range(link.speeds.start, link.speeds.stop)]
+            alphas.append(alpha)
+            accelerations.append(a)
+            continue
         own = [
             sub(b, add(dot(x, alpha), dot(y, a)))
             for b, x, y in zip(gain.bias, gain.alpha_rows, gain.a_rows, strict=True)

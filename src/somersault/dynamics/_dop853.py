@@ -4,7 +4,6 @@ Source: E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equa
 section II.10 (Dormand and Prince's method); checked in the tests by the order conditions.
 """
 
-# ruff: noqa: E501
 NODES = (
     0.0,
     0.05260015195876773,

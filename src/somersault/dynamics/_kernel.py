@@ -34,7 +34,7 @@ class Kernel:
 
     @cached_property
     def _compiled(self):  # the engine must outlive the addresses taken from it
-        return _compile(llvm_module(self._function, "kernel"))
+        return compiled(llvm_module(self._function, "kernel"))
 
     @cached_property
     def address(self) -> int:
@@ -67,13 +67,13 @@ class Kernel:
         (blocks, outputs, 8)."""
         if out is None:
             out = aligned((len(x), self.outputs, LANES))
-        workers = _threads() if len(x) >= _WORTH_A_THREAD else 1
+        workers = threads() if len(x) >= _WORTH_A_THREAD else 1
         edges = np.linspace(0, len(x), workers + 1).astype(int)
         parts = [(x[a:b], out[a:b]) for a, b in pairwise(edges)]
         if workers == 1:
             self._run(*parts[0])
         else:
-            list(_pool().map(lambda part: self._run(*part), parts))
+            list(pool().map(lambda part: self._run(*part), parts))
         return out
 
     def _run(self, x: Array, out: Array) -> None:
@@ -89,15 +89,15 @@ def aligned(shape: tuple[int, ...]) -> Array:
 
 
 @cache
-def _threads() -> int:
+def threads() -> int:
     return max(
         1, len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     )
 
 
 @cache
-def _pool() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(_threads(), thread_name_prefix="somersault")
+def pool() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(threads(), thread_name_prefix="somersault")
 
 
 def _target_machine():
@@ -114,7 +114,7 @@ def _target_machine():
     )
 
 
-def _compile(text: str):
+def compiled(text: str):
     import llvmlite.binding as llvm
 
     machine = _target_machine()

@@ -166,6 +166,12 @@ class _Writer:
             ca.OP_SQ: lambda: self._two("fmul", x[0], x[0]),
             ca.OP_TWICE: lambda: self._two("fadd", x[0], x[0]),
             ca.OP_INV: lambda: self._one_over(x[0]),
+            ca.OP_FMIN: lambda: self._where(
+                self._emit(f"fcmp olt {_V} {x[0]}, {x[1]}"), x[0], x[1]
+            ),
+            ca.OP_FMAX: lambda: self._where(
+                self._emit(f"fcmp ogt {_V} {x[0]}, {x[1]}"), x[0], x[1]
+            ),
             ca.OP_SQRT: lambda: self._call("sqrt", x[0]),
             ca.OP_FABS: lambda: self._call("fabs", x[0]),
             ca.OP_SIN: lambda: self._sine_cosine(x[0])[0],

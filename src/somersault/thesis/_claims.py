@@ -46,8 +46,8 @@ def number(
     ours = float(computed)
     # A difference of exactly the tolerance holds, whatever the last binary digit says.
     holds = bool(abs(ours - thesis) <= tolerance * (1 + 1e-9) + 1e-15)
-    shown = [float(f"{value:.9g}") for value in (thesis, ours)]
-    return Claim(id, where, claim, *shown, unit, float(tolerance), holds, note)
+    theirs, shown = (float(f"{value:.9g}") for value in (thesis, ours))
+    return Claim(id, where, claim, theirs, shown, unit, float(tolerance), holds, note)
 
 
 def statement(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -28,6 +28,7 @@ from somersault.thesis._furrer import (
 from somersault.thesis._locus import SWEEP, asymmetry, roots_along
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.figure import Figure
 
 _COARSE = np.linspace(0, 3, 61), np.linspace(LOW, HIGH, 121)
@@ -35,7 +36,11 @@ _COARSE = np.linspace(0, 3, 61), np.linspace(LOW, HIGH, 121)
 
 def _growth(damping: float, angles: Array, stiffness: Array, axis: int = 2) -> Array:
     """Growth rates (K_sh, Γ) with damped shoulders."""
-    quantities = {ANGLE: angles[None, :], STIFFNESS: stiffness[:, None], DAMPING: damping}
+    quantities: dict[str, Any] = {
+        ANGLE: angles[None, :],
+        STIFFNESS: stiffness[:, None],
+        DAMPING: damping,
+    }
     return st.growth_rates(MODEL, quantities, axis=axis, subsystem=THREE if axis == 2 else None)
 
 
@@ -136,7 +141,7 @@ def _draw_4_7(roots: Array, moving: Array, best: int) -> Figure:
     from somersault.view import _style as look
 
     made = look.figure(9.2, 5.2)
-    ax, rate = made.subplots(1, 2, width_ratios=(1.15, 1))
+    ax, rate = made.subplots(1, 2, width_ratios=(1.1, 1))
     ax.set_title("Roots at Γ = 1.3 rad, $b_{sh}$/Ω = 0.1 kg m²")
     dots = charts.locus(ax, SWEEP, roots, size=9, arrows=(-1.0, 0.3, 3.0))
     charts.stroboscopic(ax, text="stroboscopic")
@@ -151,8 +156,8 @@ def _draw_4_7(roots: Array, moving: Array, best: int) -> Figure:
     look.pointer(
         rate,
         (SWEEP[best], moving[best]),
-        (2.0, 0.16),
-        f"damped: never below\n{moving[best]:.3f} Ω",
+        (1.85, 0.16),
+        f"damped: at least\n{moving[best]:.3f} Ω",
         look.VERMILION,
     )
     return made
@@ -183,7 +188,8 @@ def energy() -> Result:
         "< 0) that no shoulder spring can lift. Of its two arm–body oscillations one has negative "
         f"energy, so a damper that takes energy away makes it larger. At Γ = 1.3, K_sh = 1: "
         f"{_signs()}. That is why figure 4-7 has no stable spring. Where the two oscillations, of "
-        "opposite energy, meet lies the lower edge of figure 4-10. The same athlete turning cartwheels about "
+        "opposite energy, meet lies the lower edge of figure 4-10. The same athlete turning "
+        "cartwheels about "
         "the axis of greatest inertia is definite above a certain stiffness, and damping does no "
         "harm there.",
         (),
@@ -195,7 +201,7 @@ def energy() -> Result:
     )
 
 
-def _draw_energy(layout, wheel) -> Figure:  # type: ignore[no-untyped-def]
+def _draw_energy(layout: xr.Dataset, wheel: xr.Dataset) -> Figure:
     from somersault.view import _charts as charts
     from somersault.view import _style as look
 
@@ -253,6 +259,7 @@ def _signs() -> str:
             sign = "positive" if mode.energy > 0 else "negative"
             words.append(
                 f"the one at {mode.root.imag:.2f} Ω has {sign} energy and, damped by "
-                f"b/(Ω I) = 0.01, {'grows' if near.real > 0 else 'decays'} at {abs(near.real):.4f} Ω"
+                f"b/(Ω I) = 0.01, {'grows' if near.real > 0 else 'decays'} at "
+                f"{abs(near.real):.4f} Ω"
             )
     return "; ".join(words)

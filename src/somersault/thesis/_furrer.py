@@ -11,9 +11,9 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from somersault._array import Array
 
 from somersault import stability as st
+from somersault._array import Array
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -162,7 +162,8 @@ def _ends(roots: Array) -> list[Claim]:
         number(
             "fig4-6.arm-body",
             where,
-            "at high K_sh the fast pair is an arm–body oscillation: frequency over that of the arms "
+            "at high K_sh the fast pair is an arm–body oscillation: frequency over that of "
+            "the arms "
             "on their springs against the body",
             1.0,
             float(ratio[-1]),

@@ -152,7 +152,8 @@ def _decoupling(systems: list[st.LinearSpin]) -> Claim:
         "§4.2.2",
         "the system decouples into tilt, twist, asymmetric arms and somersault, symmetric arms",
         "an upper 3-by-3 and a lower 2-by-2 system",
-        f"exactly these two at {sum(p == (upper, lower) for p in parts)} of {len(parts)} arm angles",
+        f"exactly these two at {sum(p == (upper, lower) for p in parts)} of {len(parts)} arm "
+        f"angles",
         not across and all(p == (upper, lower) for p in parts[1:]),
         "With springs and dampers. At Γ = 0 the lower system itself falls apart: g45 = dI₂/dΓ "
         "vanishes there.",

@@ -1,12 +1,14 @@
-"""Regions of stability over arm angle and shoulder stiffness: figures 4-9, 4-10, 4-11, 4-17."""
+"""Regions of stability over arm angle and shoulder stiffness: figures 4-9, 4-10, 4-11."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from somersault import stability as st
+from somersault._array import Array
 from somersault.thesis._claims import Claim, number, statement
 from somersault.thesis._entries import Result
 from somersault.thesis._furrer import (
@@ -29,7 +31,7 @@ if TYPE_CHECKING:
 
 # Edges of the 5-d.o.f. region from another implementation, in steps of 0.02 (errata).
 REFERENCE = {1.2: (0.94, 1.34), 1.4: (0.82, 1.32), 1.6: (0.56, 1.12), 1.8: (0.18, 0.74)}
-_FINE = np.linspace(0, 3, 301)
+FINE = np.linspace(0, 3, 301)
 
 
 def fig_4_9() -> Result:
@@ -38,7 +40,7 @@ def fig_4_9() -> Result:
     positive = five[STIFFNESS] > 1e-9
     share = float(five.sum() / three.sum())
     share_positive = float((five & positive).sum() / (three & positive).sum())
-    edge = edges(_FINE)
+    edge = edges(FINE)
     low, high = _positive_range()
     open_, close = _closing(0.5, 0.7), _closing(2.6, 2.4)
     return Result(
@@ -48,7 +50,8 @@ def fig_4_9() -> Result:
         "between 0.8 and 2.0 rad.",
         f"The region is a crescent from Γ = {open_:.2f} to {close:.2f} rad; springs of positive "
         f"stiffness reach from {low:.2f} to {high:.2f} rad. It thins to a blade at both ends: at "
-        f"0.6 rad it is {_width(0.6):.3f} wide, at 0.7 rad {_width(0.7):.3f}. Points 0.1 apart miss "
+        f"0.6 rad it is {_width(0.6):.3f} wide, at 0.7 rad {_width(0.7):.3f}. Points 0.1 "
+        f"apart miss "
         f"the blade and give 0.8 to 2.0. It covers {100 * share:.0f} % of figure 4-10's area "
         f"({100 * share_positive:.0f} % of it for K_sh > 0); what is lost lies along one edge, "
         "where the symmetric arms are too soft.",
@@ -67,7 +70,7 @@ def _positive_range() -> tuple[float, float]:
     return _closing(0.5, 0.7), high
 
 
-def _root(function, low: float, high: float) -> float:  # type: ignore[no-untyped-def]
+def _root(function: Callable[[float], float], low: float, high: float) -> float:
     from scipy.optimize import brentq
 
     return float(brentq(function, low, high, xtol=1e-7))
@@ -100,7 +103,8 @@ def _range_claims(low: float, high: float) -> list[Claim]:
         found[step] = (round(float(some.min()), 2), round(float(some.max()), 2))
     finer = ", ".join(f"{a:g} to {b:g} with {step:g}" for step, (a, b) in found.items())
     blade = (
-        f"A blade: stable K_sh are {_width(0.6):.4f} apart at 0.6 rad, {_width(0.7):.3f} at 0.7 and "
+        f"A blade: stable K_sh are {_width(0.6):.4f} apart at 0.6 rad, {_width(0.7):.3f} at "
+        f"0.7 and "
         f"{_width(0.8):.3f} at 0.8. A search on separate points misses it: {finer}."
     )
     return [
@@ -139,8 +143,8 @@ def _range_claims(low: float, high: float) -> list[Claim]:
 def _share_claims(share: float, share_positive: float) -> list[Claim]:
     five, three = both(), region(THREE).stable
     lost = 100 * (1 - share)
-    edge = edges(_FINE)
-    trimmed = _FINE[edge.lower5 > edge.lower3 + 1e-9]
+    edge = edges(FINE)
+    trimmed = FINE[edge.lower5 > edge.lower3 + 1e-9]
     area = f"{100 * share:.1f} % of the 3-d.o.f. area ({100 * share_positive:.1f} % for K_sh > 0)"
     return [
         statement(
@@ -162,13 +166,15 @@ def _share_claims(share: float, share_positive: float) -> list[Claim]:
             f"{lost:.1f} % fail",
             share >= 0.75,
             "“Few” read as fewer than one in four. It is a fair summary of the shape, but nearly a "
-            f"fifth of the area is lost, all of it along the lower edge between Γ = {trimmed.min():.2f} "
+            f"fifth of the area is lost, all of it along the lower edge between Γ = "
+            f"{trimmed.min():.2f} "
             f"and {trimmed.max():.2f} rad.",
         ),
         statement(
             "fig4-9.nearly",
             "§4.2.2",
-            "parameters that stabilise the whole are nearly, not exactly, those of the 3-by-3 system",
+            "parameters that stabilise the whole are nearly, not exactly, those of the "
+            "3-by-3 system",
             "nearly, but not exactly, identical",
             area,
             0.75 <= share < 1,
@@ -193,7 +199,7 @@ def _joint_equals() -> bool:
     return bool(np.array_equal(whole.stable.values, parts.values))
 
 
-def _same_top(upper5: np.ndarray, upper3: np.ndarray) -> Claim:
+def _same_top(upper5: Array, upper3: Array) -> Claim:
     have = ~np.isnan(upper5)
     same = np.abs(upper5[have] - upper3[have]) < 1e-9
     return statement(
@@ -213,11 +219,10 @@ def _draw_4_9() -> Figure:
     made = look.figure(7.4, 5.4)
     ax = made.add_subplot()
     charts.chart_axes(ax, "Stable somersaults, five degrees of freedom")
-    three = region(THREE)
-    charts.filled(ax, three[ANGLE], three[STIFFNESS], three.stable, look.PALE, None, alpha=1)
-    charts.filled(ax, three[ANGLE], three[STIFFNESS], both())
-    edge = edges(_FINE)
-    ax.plot(_FINE, edge.lower2, color=look.VERMILION, lw=1.2, ls="--")
+    edge = edges(FINE)
+    charts.band(ax, FINE, edge.lower3, edge.upper3, look.PALE, None, alpha=1)
+    charts.band(ax, FINE, edge.lower5, edge.upper5)
+    ax.plot(FINE, edge.lower2, color=look.VERMILION, lw=1.2, ls="--")
     for angle, (low, high) in REFERENCE.items():
         ax.plot([angle, angle], [low, high], "o", color=look.BLACK, ms=4, zorder=6)
     look.label(ax, 1.4, 1.03, "stable", look.BLUE, ha="center", fontsize=10)
@@ -232,28 +237,31 @@ def _draw_4_9() -> Figure:
     return made
 
 
-def _draw_part(subsystem: str, title: str, words: tuple[float, float, str]) -> tuple[Figure, Axes]:
+def draw_part(subsystem: str, title: str, words: tuple[float, float, str]) -> tuple[Figure, Axes]:
     from somersault.view import _charts as charts
     from somersault.view import _style as look
 
     made = look.figure(7.0, 5.0)
     ax = made.add_subplot()
     charts.chart_axes(ax, title)
-    data = region(subsystem)
-    charts.filled(ax, data[ANGLE], data[STIFFNESS], data.stable)
+    edge = edges(FINE)  # the same as the search finds, as claims of 4-10 and 4-11 check
+    if subsystem == THREE:
+        charts.band(ax, FINE, edge.lower3, edge.upper3)
+    else:
+        charts.band(ax, FINE, edge.lower2, np.full_like(FINE, HIGH))
     look.label(ax, *words, look.BLUE, ha="center", fontsize=10)
     return made, ax
 
 
 def fig_4_10() -> Result:
     """Where tilt, twist and asymmetric arms are stable."""
-    edge, stable = edges(_FINE), region(THREE).stable.values
+    edge, stable = edges(FINE), region(THREE).stable.values
     k = region(THREE)[STIFFNESS].values
     away = np.min(np.abs(k[:, None] - np.stack([edge.lower3, edge.upper3])[:, None, :]), 0)
     inside = (k[:, None] > edge.lower3) & (k[:, None] < edge.upper3)
     wrong = int(((inside != stable) & ~(away < 1e-6)).sum())
     widths = edge.upper3 - edge.lower3
-    widest = float(_FINE[np.nanargmax(widths)])
+    widest = float(FINE[np.nanargmax(widths)])
     return Result(
         "Points that stabilise the three-d.o.f. system of tilt, twist and asymmetric arms.",
         f"A crescent, widest at Γ = {widest:.2f} rad ({np.nanmax(widths):.2f} in K_sh). Its edges "
@@ -284,7 +292,7 @@ def fig_4_10() -> Result:
     )
 
 
-def _one_peak(widths: np.ndarray) -> bool:
+def _one_peak(widths: Array) -> bool:
     known = widths[~np.isnan(widths)]
     top = int(np.argmax(known))
     return bool(np.all(np.diff(known[: top + 1]) > 0) and np.all(np.diff(known[top:]) < 0))
@@ -293,7 +301,7 @@ def _one_peak(widths: np.ndarray) -> bool:
 def _draw_4_10() -> Figure:
     from somersault.view import _style as look
 
-    made, ax = _draw_part(THREE, "Tilt, twist and asymmetric arms", (1.42, 0.95, "stable"))
+    made, ax = draw_part(THREE, "Tilt, twist and asymmetric arms", (1.42, 0.95, "stable"))
     look.pointer(ax, (1.55, 1.18), (1.9, 1.9), "above: a root leaves zero,\ntilt and twist diverge")
     look.pointer(ax, (1.1, 0.78), (0.3, -0.8), "below: two oscillations\nmeet and one grows")
     return made
@@ -301,11 +309,11 @@ def _draw_4_10() -> Figure:
 
 def fig_4_11() -> Result:
     """Where somersault and symmetric arms are stable."""
-    edge, data = edges(_FINE), region(TWO)
+    edge, data = edges(FINE), region(TWO)
     k = data[STIFFNESS].values[:, None]
     wrong = int((((k > edge.lower2) != data.stable.values) & (abs(k - edge.lower2) > 1e-6)).sum())
     stiff = np.array([5.0, 10, 100, 1e3, 1e4])
-    far = st.growth_rates(MODEL, {ANGLE: _FINE[:, None], STIFFNESS: stiff[None, :]}, subsystem=TWO)
+    far = st.growth_rates(MODEL, {ANGLE: FINE[:, None], STIFFNESS: stiff[None, :]}, subsystem=TWO)
     upward = np.all(np.diff(data.stable.values.astype(int), axis=0) >= 0)
     return Result(
         "Points that stabilise the two-d.o.f. system of somersault and symmetric arms. Higher K_sh "
@@ -325,90 +333,11 @@ def fig_4_11() -> Result:
                 "Figure 4-11",
                 "higher K_sh than shown also stabilise the system",
                 "suspected",
-                f"stable at {int((far <= GROWS).sum())} of {far.size} cases with K_sh of 5 to 10 000",
+                f"stable at {int((far <= GROWS).sum())} of {far.size} cases with K_sh of 5 to "
+                f"10 000",
                 bool(np.all(far <= GROWS)),
                 "In closed form too: stiffness only adds to k55.",
             ),
         ),
-        _draw_part(TWO, "Somersault and symmetric arms", (1.5, 2.4, "stable, and so on upwards"))[
-            0
-        ],
+        draw_part(TWO, "Somersault and symmetric arms", (1.5, 2.4, "stable, and so on upwards"))[0],
     )
-
-
-def fig_4_17() -> Result:
-    """The region of figure 4-10 and the spring that cancels the centrifugal term."""
-    edge = edges(_FINE)
-    have = ~np.isnan(edge.lower3)
-    low, high, rule = (x[have] for x in (edge.lower3, edge.upper3, edge.rule))
-    inside = (low < rule) & (rule < high)
-    off = (rule - (low + high) / 2) / (high - low)
-    outside = _FINE[have][~inside]
-    middle = edges(np.array([np.pi / 2]))
-    straight = float(middle.rule[0])
-    runs = f"below it at Γ up to {outside[outside < 1.5].max():.2f} rad and from " + (
-        f"{outside[outside > 1.5].min():.2f} rad"
-    )
-    bulk = (low + high) / 2
-    fit = float(np.corrcoef(rule, bulk)[0, 1])
-    claims = (
-        statement(
-            "fig4-17.rule",
-            "§4.4.2, Figure 4-17",
-            "the stabilising K_sh are those that cancel the centrifugal term on the arm, −k33",
-            "the region seems to be defined by it",
-            f"inside the stable range at {100 * inside.mean():.0f} % of the arm angles that have "
-            f"one; correlation with its middle {fit:.3f}",
-            inside.mean() > 0.75 and fit > 0.95,
-            f"The rule lies {runs}, where the range is a blade; elsewhere inside, always in the "
-            f"upper half: {off.min():+.2f} to {off[inside].max():+.2f} of the width from the middle, "
-            f"{np.mean(off[inside]):+.2f} on average. The upper edge is exactly the rule plus "
-            "k13²/(2 I_sh k11), so the rule never overshoots.",
-        ),
-        number(
-            "fig4-17.straight",
-            "§4.4.2",
-            "stabilising K_sh for arms straight out, Γ = π/2, by the rule",
-            1.0,
-            straight,
-            "1",
-            0.05,
-        ),
-        statement(
-            "fig4-17.one",
-            "§4.4.2",
-            "K_sh = 1.0 stabilises Γ = π/2",
-            "approximately 1.0",
-            f"3 d.o.f.: {middle.lower3[0]:.3f} to {middle.upper3[0]:.3f}; 5 d.o.f.: from "
-            f"{middle.lower5[0]:.3f}",
-            bool(middle.lower5[0] < 1.0 < middle.upper5[0]),
-        ),
-    )
-    return Result(
-        "The region of figure 4-10 with the K_sh that would exactly cancel the spring term due to "
-        "centrifugal forces on the arm: the region “seems to be defined by the negative of this "
-        "centrifugal force term”.",
-        f"The rule is inside the stable range at {100 * inside.mean():.0f} % of the arm angles "
-        "that have one, in its upper half. In closed form the upper edge is the rule plus "
-        "k13²/(2 I_sh k11): what the arm's coupling to the body allows beyond it.",
-        claims,
-        _draw_4_17(),
-    )
-
-
-def _draw_4_17() -> Figure:
-    from somersault.view import _style as look
-
-    made, ax = _draw_part(THREE, "The rule: cancel the centrifugal term", (1.4, 0.83, "stable"))
-    edge = edges(_FINE)
-    ax.plot(_FINE, edge.rule, color=look.VERMILION, lw=2)
-    look.pointer(
-        ax,
-        (2.0, 0.21),
-        (2.15, 1.1),
-        "$K_{sh}$ = −$k_{33}$/(2 $I_{sh}$)\ncancels it",
-        look.VERMILION,
-    )
-    ax.plot(np.pi / 2, 1.0, "o", color=look.BLACK, ms=5, zorder=6)
-    look.pointer(ax, (np.pi / 2, 1.0), (1.75, 2.0), "thesis: ≈ 1.0 for\narms straight out")
-    return made

@@ -209,5 +209,5 @@ def _draw_4_5(angles: Array, k1: Array, k3: Array) -> Figure:
         words = f"Γ = {angle:g}" if angle in (0.0, 3.0) else f"{angle:g}"
         look.label(near, x, y, words, look.VERMILION, ha="right" if rising else "left")
     near.plot(0.65, -0.87, "x", color=look.BLUE, ms=8, mew=2)
-    look.label(near, 0.645, -0.852, "printed for 1.3", look.BLUE)
+    look.label(near, 0.645, -0.898, "printed for 1.3", look.BLUE)
     return made

@@ -51,7 +51,8 @@ def fig_4_18() -> Result:
             "≈ 1.1",
             f"{best:g} of the nine ({100 * max(shares):.0f} %); {finest:.2f} in a fine sweep",
             abs(best - 1.1) < 0.01 and abs(finest - 1.1) <= 0.05,
-            "The best is 1 + I_rel: up to there the upper edge K_sh < −kl1 + kl1² I_rel/k1 excludes "
+            "The best is 1 + I_rel: up to there the upper edge K_sh < −kl1 + kl1² I_rel/k1 "
+            "excludes "
             "no body (k1 ≤ 1), and beyond it slender bodies are lost.",
         ),
         statement(
@@ -69,7 +70,8 @@ def fig_4_18() -> Result:
             "most",
             f"{100 * shares[_STIFFNESSES.index(1.1)]:.0f} %",
             shares[_STIFFNESSES.index(1.1)] > 0.5,
-            f"Counting only bodies that can carry such an arm the best of the nine is {best_real:g}.",
+            f"Counting only bodies that can carry such an arm the best of the nine is "
+            f"{best_real:g}.",
         ),
     )
     rows = tuple(
@@ -78,7 +80,8 @@ def fig_4_18() -> Result:
     return Result(
         "Stable bodies in the k1–k3 square for nine K_sh, kl1 = −1, I_rel = 0.1: the value that "
         "stabilises the largest part of the unstable fourth quadrant is K_sh ≈ 1.1.",
-        f"K_sh = {best:g} is the best of the nine with {100 * max(shares):.0f} % of quadrant 4 (the "
+        f"K_sh = {best:g} is the best of the nine with {100 * max(shares):.0f} % of quadrant "
+        f"4 (the "
         f"best of all is 1 + I_rel). Above it the share falls steeply: {100 * shares[6]:.0f} % at "
         "1.2.",
         claims,
@@ -130,9 +133,11 @@ def fig_4_19() -> Result:
         "Stable bodies in the k1–k3 square for nine sizes of arm, kl1 = −1, K_sh = 1.0: the larger "
         "I_rel, the easier it is to stabilise the bottom two quadrants.",
         f"The stable share of the bottom two quadrants grows from {100 * shares[0]:.0f} to "
-        f"{100 * shares[-1]:.0f} %, never falling. By itself the third quadrant (k1, k3 < 0), where a "
+        f"{100 * shares[-1]:.0f} %, never falling. By itself the third quadrant (k1, k3 < 0), "
+        f"where a "
         f"rigid body needs no arm to be stable, first loses, from {100 * left[0]:.0f} to "
-        f"{100 * min(left):.0f} %: at K_sh = −kl1 nothing but the body's turning holds a small arm. "
+        f"{100 * min(left):.0f} %: at K_sh = −kl1 nothing but the body's turning holds a "
+        f"small arm. "
         "Hatching marks bodies that could not carry so large an arm.",
         claims,
         _draw(panels, [f"$I_{{rel}}$ = {r:g}" for r in _RELATIVE], shares, None),

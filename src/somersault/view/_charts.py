@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from somersault._array import Array
 from somersault.view._style import BLACK, BLUE, GREY, SKY, darkening, label
 
 if TYPE_CHECKING:
@@ -34,10 +35,25 @@ def filled(
 ) -> None:
     """A region of points that are true, filled and outlined. `stable` is (y, x)."""
     values = np.asarray(stable, float)
-    # A rim of zeros closes the outline where the region touches the frame.
     ax.contourf(x, y, values, levels=[0.5, 1.5], colors=[color], alpha=alpha, zorder=1)
     if edge is not None:
         ax.contour(x, y, values, levels=[0.5], colors=[edge], linewidths=1.2, zorder=2)
+
+
+def band(
+    ax: Axes,
+    x: Array,
+    low: Array,
+    high: Array,
+    color: str = SKY,
+    edge: str | None = BLUE,
+    alpha: float = 0.55,
+) -> None:
+    """The region between two edges; where there is none they are NaN."""
+    ax.fill_between(x, low, high, color=color, alpha=alpha, lw=0, zorder=1)
+    if edge is not None:
+        for line in (low, high):
+            ax.plot(x, line, color=edge, lw=1.2, zorder=2)
 
 
 def locus(

@@ -44,6 +44,6 @@ def simplest() -> Figure:
     label(ax, 1.82, 0.22, "arm angle")
     pointer(ax, (0, 0), (0.6, -0.75), "pivot: both centres of mass,\naxis 1 towards you")
     pointer(ax, (-0.28, -0.2), (-2.25, -0.75), "spring $K_{sh}$ between\narm and body", VERMILION)
-    label(ax, -0.24, -1.12, "body", BLACK)
-    label(ax, -1.75, -0.2, "one arm, held only\nby the spring", BLACK, va="top")
+    label(ax, 0, -1.12, "body", BLACK, ha="center")
+    label(ax, -1.75, 0.1, "one arm, held only\nby the spring", BLACK, va="bottom")
     return made

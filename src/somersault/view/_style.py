@@ -16,7 +16,7 @@ YELLOW, BLUE, VERMILION, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
 GREY, PALE = "#6b6b6b", "#dfe9f3"
 LIGHT_TO_DARK = ("#b9d3ee", "#5e9bd1", "#1f5fa0", "#0a2342")  # one hue, by darkness
 
-_SETTINGS: dict[str, Any] = {
+_SETTINGS: Any = {
     "font.family": "DejaVu Sans",
     "font.size": 10.0,
     "axes.titlesize": 10.5,
@@ -26,6 +26,8 @@ _SETTINGS: dict[str, Any] = {
     "axes.linewidth": 0.8,
     "lines.linewidth": 1.8,
     "figure.dpi": 100.0,
+    "hatch.color": GREY,
+    "hatch.linewidth": 0.6,
     "svg.hashsalt": "somersault",
     "svg.fonttype": "path",
     "path.simplify_threshold": 0.3,

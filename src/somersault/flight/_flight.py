@@ -1,0 +1,193 @@
+"""What a flight was: a labelled history, its landing, and how well it kept what it must."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from somersault._array import Array
+from somersault.attitude import matrix_from_quaternion, unwrapped_angles
+from somersault.flight._start import Start
+from somersault.flight._system import System
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class Landing:
+    """The end of a flight: when, how the body stood, how it moved, and why it ended.
+
+    Angles in rad, unwrapped; quaternion scalar first, body to inertial; angular velocity in
+    body axes, rad/s; joint coordinates by name. `ended` is "duration", "event", "too many
+    steps" or "not finite".
+    """
+
+    time: float
+    somersault: float
+    tilt: float
+    twist: float
+    quaternion: Array
+    angular_velocity: Array
+    joints: dict[str, float]
+    ended: str
+
+
+@dataclass(frozen=True, eq=False)
+class Flight:
+    """One flight. `dataset` is its history; made by `fly`."""
+
+    system: System
+    start: Start
+    velocity: Array
+    gravity: Array
+    _moments: Array
+    _states: Array
+    _keep: Array
+    _parameters: Array
+    ended: str
+    steps: int
+
+    @cached_property
+    def _angles(self) -> Array:
+        """Somersault, tilt, twist at every point, unwrapped, (points, 3)."""
+        return unwrapped_angles(self._states[:, :4])
+
+    @cached_property
+    def times(self) -> Array:
+        """Sample times in s, (time,)."""
+        return self._moments[self._keep]
+
+    @cached_property
+    def states(self) -> Array:
+        """States at the sample times, (time, state), quaternions of unit length."""
+        states = self._states[self._keep].copy()
+        states[:, :4] /= np.linalg.norm(states[:, :4], axis=1, keepdims=True)
+        return states
+
+    @cached_property
+    def _joints(self) -> tuple[Array, Array]:
+        return self.system.joint_states(self.states, self.times, self._parameters)
+
+    @cached_property
+    def _speeds(self) -> Array:
+        """(ω, velocity of the base with the centre of mass at rest, joint speeds)."""
+        q, u = self._joints
+        still = np.concatenate([self.states[:, 4:7], np.zeros((len(u), 3)), u], 1)
+        linear = self.system.equations.momentum(q, still)[:, 3:]
+        still[:, 3:6] = -linear / self.system.model.mass
+        return still
+
+    @cached_property
+    def angular_momentum(self) -> Array:
+        """About the centre of mass, in inertial axes, (time, 3), kg m²/s."""
+        h = self.system.equations.momentum(self._joints[0], self._speeds)[:, :3]
+        return np.einsum("tij,tj->ti", matrix_from_quaternion(self.states[:, :4]), h)
+
+    @cached_property
+    def kinetic_energy(self) -> Array:
+        """Of motion about the centre of mass, (time,), J."""
+        return self.system.equations.kinetic_energy(self._joints[0], self._speeds)
+
+    @cached_property
+    def spring_energy(self) -> Array:
+        """Held by the joints' springs, (time,), J."""
+        q, _ = self._joints
+        total = np.zeros(len(q))
+        for plan in self.start.plans:
+            if plan.motion == "sprung":
+                own = q[:, self.system.model.coordinate_slice(plan.joint.name)]
+                total += 0.5 * plan.stiffness * _stretch(own, plan.rest) ** 2
+        return total
+
+    @property
+    def momentum_drift(self) -> float:
+        """Largest change of angular momentum, over its size (kg m²/s where that is zero)."""
+        h = self.angular_momentum
+        size = float(np.linalg.norm(h[0]))
+        return float(np.linalg.norm(h - h[0], axis=1).max() / (size or 1.0))
+
+    @property
+    def conservative(self) -> bool:
+        """Whether energy is kept: nothing damped, nothing driven."""
+        return not any(p.damping or p.motion == "prescribed" for p in self.start.plans)
+
+    @property
+    def energy_drift(self) -> float | None:
+        """Largest relative change of energy; None where it is not kept."""
+        if not self.conservative:
+            return None
+        energy = self.kinetic_energy + self.spring_energy
+        return float(np.abs(energy - energy[0]).max() / (abs(energy[0]) or 1.0))
+
+    @property
+    def landing(self) -> Landing:
+        """How it ended."""
+        somersault, tilt, twist = self._angles[-1].tolist()
+        names = self.system.model.coordinates
+        return Landing(
+            float(self.times[-1]), somersault, tilt, twist,
+            self.states[-1, :4], self.states[-1, 4:7],
+            dict(zip(names, self._joints[0][-1].tolist(), strict=True)), self.ended,
+        )  # fmt: skip
+
+    @cached_property
+    def dataset(self) -> xr.Dataset:
+        """The history as a labelled dataset over `time`."""
+        import xarray as xr
+
+        return xr.Dataset(self._variables(), self._coordinates(), self._attributes())
+
+    def _variables(self) -> dict[str, Any]:
+        angles = self._angles[self._keep]
+        q, u = self._joints
+        fallen = 0.5 * self.times[:, None] ** 2 * self.gravity
+        centre = self.times[:, None] * self.velocity + fallen
+        rad = {"units": "rad"}
+        return {
+            "somersault": ("time", angles[:, 0], rad),
+            "tilt": ("time", angles[:, 1], rad),
+            "twist": ("time", angles[:, 2], rad),
+            "quaternion": (("time", "component"), self.states[:, :4], {"units": "1"}),
+            "angular_velocity": (("time", "body_axis"), self.states[:, 4:7], {"units": "rad/s"}),
+            "joint_angle": (("time", "joint"), q, {"units": "rad or m"}),
+            "joint_rate": (("time", "joint_speed"), u, {"units": "rad/s or m/s"}),
+            "angular_momentum": (
+                ("time", "inertial_axis"), self.angular_momentum, {"units": "kg m2/s"},
+            ),
+            "kinetic_energy": ("time", self.kinetic_energy, {"units": "J"}),
+            "spring_energy": ("time", self.spring_energy, {"units": "J"}),
+            "centre_of_mass": (("time", "inertial_axis"), centre, {"units": "m"}),
+        }  # fmt: skip
+
+    def _coordinates(self) -> dict[str, Any]:
+        model = self.system.model
+        return {
+            "time": ("time", self.times, {"units": "s"}),
+            "component": list("wxyz"),
+            "body_axis": [1, 2, 3],
+            "inertial_axis": [1, 2, 3],
+            "joint": list(model.coordinates),
+            "joint_speed": list(model.speeds),
+        }
+
+    def _attributes(self) -> dict[str, Any]:
+        return {"model": self.system.model.name, "ended": self.ended, "steps": self.steps}
+
+    def save(self, path: str | Path) -> None:
+        """Write the history as NetCDF (.nc) or CSV (.csv), whole or not at all."""
+        from somersault.flight._save import save
+
+        save(self, Path(path))
+
+
+def _stretch(q: Array, rest: float) -> Array:
+    """How far a joint's coordinates (…, 1) or (…, 4) are from rest, (…)."""
+    if q.shape[-1] == 1:
+        return q[:, 0] - rest
+    length = np.linalg.norm(q[:, 1:], axis=1)
+    return 2 * np.arctan2(length, np.abs(q[:, 0]))

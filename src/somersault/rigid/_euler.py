@@ -1,0 +1,82 @@
+"""Euler's equations, the energies a momentum allows, and the two kinds of motion (2.2, 2.5)."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from somersault._array import Array
+from somersault._errors import SomersaultError
+from somersault.rigid._inertia import checked_inertias
+
+Kind = Literal["minor", "major", "separatrix"]
+
+
+def euler_rates(inertias: ArrayLike, omega: ArrayLike) -> Array:
+    """ω̇ (…, 3), rad/s², of a free body with inertias (…, 3) at ω (…, 3): eq. 2.1."""
+    i, w = np.asarray(inertias, float), np.asarray(omega, float)
+    return np.cross(i * w, w) / i
+
+
+def energy_bounds(inertias: ArrayLike, momentum: float) -> tuple[float, float, float]:
+    """Least, separatrix and greatest energy, J, at an angular momentum h, kg m²/s.
+
+    h²/2I of the spins about the major, middle and minor axes (section 2.5).
+
+    Raises `SomersaultError` for inertias that no body has or a momentum that is not positive.
+    """
+    checked = np.sort(checked_inertias(inertias))
+    if not (np.isfinite(momentum) and momentum > 0):
+        raise SomersaultError(
+            f"The angular momentum must be positive and finite, not {momentum}; give its magnitude."
+        )
+    minor, middle, major = (float(momentum**2 / (2 * i)) for i in checked)
+    return major, middle, minor
+
+
+def kind_of_motion(inertias: ArrayLike, omega: ArrayLike, tolerance: float = 0.0) -> Kind:
+    """Which principal axis the angular momentum circles, as seen from the body (section 2.5).
+
+    "minor": T > h²/2I_mid, "major": T < h²/2I_mid, "separatrix": equal to within `tolerance`,
+    relatively. Where axis 3 is the axis circled, twist is monotonic, elsewhere it oscillates.
+    Spins about the middle axis and about the equator of a symmetric body are on the separatrix;
+    so is everything that a spherical body does. The comparison is made without rounding.
+
+    Raises `SomersaultError` for inertias that no body has or an ω (3,) that is zero or not finite.
+    """
+    checked, rates = checked_inertias(inertias), checked_omega(omega)
+    excess, squared = excess_energy(checked, rates)
+    if abs(excess) <= Fraction(tolerance) * squared:
+        return "separatrix"
+    return "minor" if excess > 0 else "major"
+
+
+def excess_energy(inertias: Array, omega: Array) -> tuple[Fraction, Fraction]:
+    """2T I_mid − h² and h², exactly.
+
+    Numbers of the machine are fractions; near the separatrix, where the two terms cancel,
+    rounding them would move the time of the next half twist.
+    """
+    i = [Fraction(x) for x in inertias.tolist()]
+    w = [Fraction(x) for x in omega.tolist()]
+    squared = sum((a * b) ** 2 for a, b in zip(i, w, strict=True)) + Fraction(0)
+    twice = sum(a * b * b for a, b in zip(i, w, strict=True)) + Fraction(0)
+    return twice * sorted(i)[1] - squared, squared
+
+
+def checked_omega(omega: ArrayLike) -> Array:
+    """An angular velocity (3,), rad/s, that is finite and not zero; else `SomersaultError`."""
+    found = np.asarray(omega, float)
+    if found.shape != (3,) or not np.all(np.isfinite(found)):
+        raise SomersaultError(
+            f"The angular velocity must be three finite numbers in rad/s, not {omega}."
+        )
+    if not found.any():
+        raise SomersaultError(
+            "A body without angular momentum does not turn; give an angular velocity that is not "
+            "zero."
+        )
+    return found

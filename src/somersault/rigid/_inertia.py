@@ -1,0 +1,88 @@
+"""Inertia ratios k1 and k3, and what they say of a spin about axis 2 (section 2.3.2)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from somersault._array import Array
+from somersault._errors import SomersaultError
+
+_FLAT = 1e-9  # by how much, relatively, rounding may break the triangle inequality of a flat body
+
+
+def checked_inertias(inertias: ArrayLike) -> Array:
+    """Three principal inertias (3,) that a body can have, kg m².
+
+    Raises `SomersaultError` unless they are positive and finite and none exceeds the sum of
+    the other two (which a flat body reaches).
+    """
+    found = np.asarray(inertias, float)
+    if found.shape != (3,):
+        raise SomersaultError(
+            f"A rigid body has three principal inertias, not an array of shape {found.shape}; "
+            "give (I1, I2, I3)."
+        )
+    if not np.all(np.isfinite(found) & (found > 0)):
+        raise SomersaultError(
+            f"Principal inertias must be positive and finite, not {_listed(found)}; "
+            "give them in kg m²."
+        )
+    if 2 * found.max() > found.sum() * (1 + _FLAT):
+        raise SomersaultError(
+            f"No body has principal inertias {_listed(found)}, because none may exceed the sum "
+            "of the other two; check their units and order."
+        )
+    return found
+
+
+def inertia_ratios(I1: ArrayLike, I2: ArrayLike, I3: ArrayLike) -> tuple[Array, Array]:
+    """k1 = (I2 − I3)/I1 and k3 = (I2 − I1)/I3 (…), from inertias (…) in kg m².
+
+    Raises `SomersaultError` where an inertia is not positive.
+    """
+    one, two, three = np.broadcast_arrays(*(np.asarray(i, float) for i in (I1, I2, I3)))
+    if not np.all((one > 0) & (two > 0) & (three > 0)):
+        raise SomersaultError("Principal inertias must be positive; give them in kg m².")
+    return (two - three) / one, (two - one) / three
+
+
+def inertias_from_ratios(k1: ArrayLike, k3: ArrayLike) -> Array:
+    """(I1, I2, I3)/I2 (…, 3) of the bodies with ratios k1 and k3 (…): `inertia_ratios` inverted.
+
+    Raises `SomersaultError` outside −1 < k < 1, where there is no body (one of the ratios
+    may be ±1: a flat body or a needle).
+    """
+    a, b = np.broadcast_arrays(np.asarray(k1, float), np.asarray(k3, float))
+    if not np.all((np.abs(a) <= 1) & (np.abs(b) <= 1) & (a * b < 1) & (a < 1) & (b < 1)):
+        raise SomersaultError("Inertia ratios k1 and k3 lie between −1 and 1; give such a pair.")
+    return np.stack([(1 - b) / (1 - a * b), np.ones_like(a), (1 - a) / (1 - a * b)], -1)
+
+
+def quadrant(k1: ArrayLike, k3: ArrayLike) -> Array:
+    """Quadrant (…) of the inertia ratio diagram, 1 to 4, and 0 on its axes (figure 2-2).
+
+    1: I2 is the largest, statically stable. 3: I2 is the smallest, gyrically stable. 2
+    (I1 < I2 < I3) and 4 (I3 < I2 < I1, the layout): the middle axis, unstable.
+    """
+    a, b = np.sign(np.asarray(k1, float)), np.sign(np.asarray(k3, float))
+    inside = np.where(b > 0, np.where(a > 0, 1, 2), np.where(a > 0, 4, 3))
+    return np.where(a * b == 0, 0, inside)
+
+
+def growth_angle(k1: ArrayLike, k3: ArrayLike, N: float = 10.0) -> Array:
+    """Somersault angle (…), rad, in which the unstable mode grows by a factor N: eq. 2.14.
+
+    Infinite where k1 k3 ≥ 0: no mode grows exponentially there.
+
+    Raises `SomersaultError` unless N > 1.
+    """
+    if not N > 1:
+        raise SomersaultError(f"A mode that grows has a factor N above 1, not {N}.")
+    product = -np.asarray(k1, float) * np.asarray(k3, float)
+    with np.errstate(divide="ignore"):
+        return np.log(N) / np.sqrt(np.maximum(product, 0.0))
+
+
+def _listed(values: Array) -> str:
+    return ", ".join(f"{value:g}" for value in values)

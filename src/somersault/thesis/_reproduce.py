@@ -1,0 +1,96 @@
+"""Run the entries, and write their pictures, the claims and the report."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from somersault._errors import SomersaultError
+from somersault._files import write
+from somersault.thesis._claims import Claim
+from somersault.thesis._entries import Entry, Result, select
+from somersault.thesis._errata import ERRATA
+from somersault.thesis._registry import ENTRIES
+from somersault.view import _style
+from somersault.view._report import Section, page
+
+
+def reproduce(
+    ids: Iterable[str] | None,
+    out: Path | str,
+    progress: bool = True,
+    entries: Sequence[Entry] = ENTRIES,
+) -> list[Claim]:
+    """Regenerate what the thesis shows and check what it says.
+
+    `ids` are chapters ("ch4") or entries ("fig4-9", "table4-3"); none means everything. Writes
+    figures/ID.svg and .png, claims.json and index.html into `out`, each whole or not at all.
+    Raises SomersaultError for an ID that is not there or a place that cannot be written to.
+    """
+    chosen = select(ids, entries)
+    out = Path(out)
+    sections: list[Section] = []
+    claims: list[Claim] = []
+    try:
+        for entry in _watched(chosen, progress):
+            with _style.style():
+                result = entry.make()
+                if result.figure is not None:
+                    _save(result.figure, out / "figures" / entry.id)
+            claims += result.claims
+            sections.append(_section(entry, result))
+        records = [claim.record() for claim in claims]
+        write(out / "claims.json", json.dumps(records, indent=1, ensure_ascii=False) + "\n")
+        errata = [(e.where, e.printed, e.correct, e.why) for e in ERRATA]
+        write(out / "index.html", page(sections, errata))
+    except OSError as error:
+        raise SomersaultError(
+            f"the report cannot be written to {out}: {error.strerror or error}; choose another "
+            "directory"
+        ) from error
+    return claims
+
+
+def _watched(entries: Sequence[Entry], progress: bool) -> Iterable[Entry]:
+    """The entries, with a bar on standard error that names each as it runs."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+    from rich.progress import TimeElapsedColumn as Elapsed
+
+    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), Elapsed()
+    with Progress(*columns, console=Console(stderr=True), disable=not progress) as bar:
+        task = bar.add_task("starting", total=len(entries))
+        for entry in entries:
+            bar.update(task, description=entry.title)
+            yield entry
+            bar.advance(task)
+        bar.update(task, description="done")
+
+
+def _save(figure: Any, stem: Path) -> None:
+    """SVG and PNG that are the same, byte for byte, whenever they are made."""
+    formats: dict[str, dict[str, Any]] = {
+        ".svg": {"metadata": {"Date": None, "Creator": None}},
+        ".png": {"dpi": 160, "metadata": {"Software": None}},
+    }
+    for ending, options in formats.items():
+        held = io.BytesIO()
+        figure.savefig(held, format=ending[1:], **options)
+        write(stem.with_name(stem.name + ending), held.getvalue())
+
+
+def _section(entry: Entry, result: Result) -> Section:
+    table = (result.table.header, result.table.rows) if result.table is not None else None
+    return Section(
+        entry.id,
+        entry.title,
+        result.says,
+        result.found,
+        f"figures/{entry.id}" if result.figure is not None else None,
+        [claim.record() for claim in result.claims],
+        table,
+        entry.beyond,
+    )

@@ -1,0 +1,239 @@
+"""Claims are computed, the report is whole, and what is asked for in vain is said so."""
+
+from __future__ import annotations
+
+import json
+import math
+from html.parser import HTMLParser
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from somersault import SomersaultError
+from somersault.thesis import ENTRIES, ERRATA, Entry, Result, reproduce
+from somersault.thesis import _furrer as furrer
+from somersault.thesis import _rigid as rigid
+from somersault.thesis._claims import number, statement
+from somersault.thesis._entries import select
+
+FIELDS = ["id", "where", "claim", "thesis", "computed", "unit", "tolerance", "holds", "note"]
+
+
+# ------------------------------------------------------------------------------ claims
+
+
+def test_holds_follows_the_numbers():
+    assert number("a", "w", "c", 1.0, 1.05, "1", 0.05).holds
+    assert not number("a", "w", "c", 1.0, 1.0501, "1", 0.05).holds
+    assert not number("a", "w", "c", 1.0, math.nan, "1", 0.05).holds
+    assert statement("a", "w", "c", "yes", "yes", np.bool_(True)).holds is True
+    with pytest.raises(TypeError, match="computed"):
+        statement("a", "w", "c", "yes", "yes", "yes")  # type: ignore[arg-type]
+
+
+def test_a_changed_number_of_the_thesis_flips_its_claim(monkeypatch):
+    def claim():
+        return next(c for c in rigid.table_4_1().claims if c.id == "table4-1.rl3")
+
+    assert claim().holds
+    monkeypatch.setitem(rigid._TABLE_4_1, "rl3", (0.263, "m"))
+    assert not claim().holds
+
+
+def test_a_changed_model_flips_claims(monkeypatch):
+    """A wrong edge is noticed by the search that does not use the closed form."""
+    from somersault.thesis import _edges as edges
+
+    true = furrer.edges(edges.ANGLES)
+    found = furrer.searched(furrer.TWO, edges.ANGLES)
+    assert all(claim.holds for claim in edges._two(found, true))
+    off = furrer.Edges(true.lower3, true.upper3, true.lower2 + 1e-4, true.rule, true.arm_term)
+    assert not any(claim.holds for claim in edges._two(found, off))
+
+
+# --------------------------------------------------------------- the regions, both ways
+
+
+def test_searched_edges_are_those_of_the_characteristic_polynomial():
+    angles = np.array([0.4, 0.7, 1.1, 1.5, 1.9, 2.3, 2.7])
+    exact = furrer.edges(angles)
+    for i, ranges in enumerate(furrer.searched(furrer.THREE, angles)):
+        if np.isnan(exact.lower3[i]):
+            assert ranges == []
+        else:
+            assert ranges == [pytest.approx((exact.lower3[i], exact.upper3[i]), abs=1e-7)]
+
+
+def test_undivided_system_grows_just_outside_the_region_and_not_inside():
+    edge = furrer.edges(np.array([1.3]))
+    low, high = float(edge.lower5[0]), float(edge.upper5[0])
+    inside = furrer.undivided_growth(1.3, np.array([low + 1e-4, (low + high) / 2, high - 1e-4]))
+    outside = furrer.undivided_growth(1.3, np.array([low - 1e-4, high + 1e-4]))
+    assert inside.max() < 1e-6
+    assert outside.min() > 1e-3
+
+
+# ------------------------------------------------------------------------- which entries
+
+
+def test_select_takes_chapters_and_entries_in_their_own_order():
+    assert [e.id for e in select(["table4-3", "fig4-9"], ENTRIES)] == ["fig4-9", "table4-3"]
+    assert select(["ch4"], ENTRIES) == [e for e in ENTRIES if e.chapter == "ch4"]
+    assert select([], ENTRIES) == select(None, ENTRIES) == list(ENTRIES)
+    assert [e.id for e in select("fig4-5", ENTRIES)] == ["fig4-5"]
+
+
+def test_unknown_id_is_refused_in_one_sentence_that_lists_what_there_is(tmp_path):
+    with pytest.raises(SomersaultError) as caught:
+        reproduce(["fig9-9"], tmp_path / "out", progress=False)
+    said = str(caught.value)
+    assert "'fig9-9'" in said
+    assert "ch4" in said
+    assert "fig4-9" in said
+    assert "\n" not in said
+    assert not (tmp_path / "out").exists()
+
+
+def test_entries_have_ids_of_their_own():
+    ids = [entry.id for entry in ENTRIES]
+    assert len(set(ids)) == len(ids)
+    for figure in [*range(5, 12), *range(16, 21)]:
+        assert f"fig4-{figure}" in ids
+    for table in (1, 2, 3):
+        assert f"table4-{table}" in ids
+
+
+# ---------------------------------------------------------------------------- the report
+
+
+class _Links(HTMLParser):
+    """Everything the page points at, and tags that were left open."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.targets: list[str] = []
+        self.ids: set[str] = set()
+        self.open: list[str] = []
+        self.scripts = 0
+
+    def handle_starttag(self, tag, attrs):
+        given = dict(attrs)
+        self.targets += [given[k] for k in ("href", "src") if k in given]
+        if "id" in given:
+            self.ids.add(given["id"])
+        self.scripts += tag == "script"
+        if tag not in ("meta", "img", "br", "link"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory) -> tuple[Path, list]:
+    out = tmp_path_factory.mktemp("report")
+    return out, reproduce(["table4-1", "fig4-5", "fig4-16", "table4-3"], out, progress=False)
+
+
+def test_claims_json_has_the_agreed_fields_and_types(report):
+    out, claims = report
+    records = json.loads((out / "claims.json").read_text(encoding="utf-8"))
+    assert len(records) == len(claims) > 20
+    assert len({record["id"] for record in records}) == len(records)
+    for record in records:
+        assert list(record) == FIELDS
+        assert isinstance(record["holds"], bool)
+        assert all(isinstance(record[k], str) for k in ("id", "where", "claim", "unit", "note"))
+        if isinstance(record["thesis"], str):
+            assert isinstance(record["computed"], str)
+            assert record["tolerance"] is None
+        else:
+            near = abs(record["thesis"] - record["computed"]) <= record["tolerance"] + 1e-8
+            assert record["holds"] == near
+        assert record["holds"] or record["note"], "a claim that fails needs an explanation"
+
+
+def test_pictures_are_whole(report):
+    out, _ = report
+    pictures = sorted(p.name for p in (out / "figures").iterdir())
+    assert pictures == ["fig4-16.png", "fig4-16.svg", "fig4-5.png", "fig4-5.svg"]
+    for path in (out / "figures").glob("*.svg"):
+        root = ElementTree.parse(path).getroot()
+        assert root.tag.endswith("svg")
+        assert "date" not in path.read_text(encoding="utf-8")[:2000].lower()
+    for path in (out / "figures").glob("*.png"):
+        data = path.read_bytes()
+        assert data[:8] == b"\x89PNG\r\n\x1a\n"
+        assert data[-8:-4] == b"IEND"
+
+
+def test_page_parses_and_points_only_at_files_that_are_there(report):
+    out, claims = report
+    text = (out / "index.html").read_text(encoding="utf-8")
+    page = _Links()
+    page.feed(text)
+    assert page.open == []
+    assert page.scripts == 0
+    for target in page.targets:
+        if target.startswith("#"):
+            assert target[1:] in page.ids
+        else:
+            assert (out / target).is_file(), target
+    assert "url(" not in text
+    assert "@import" not in text
+    assert all(claim.id in text for claim in claims)
+    assert all(e.where in text for e in ERRATA)
+
+
+def test_page_lists_what_does_not_hold_first(report):
+    out, claims = report
+    text = (out / "index.html").read_text(encoding="utf-8")
+    start = text.index('id="differences"')
+    first = text[start : text.index("<section>", start)]
+    for claim in claims:
+        assert (f">{claim.id}<" in first) == (not claim.holds)
+
+
+def test_report_repeats_byte_for_byte(report, tmp_path):
+    out, _ = report
+    reproduce(["table4-1", "fig4-5", "fig4-16", "table4-3"], tmp_path, progress=False)
+    for path in (p for p in out.rglob("*") if p.is_file()):
+        assert (tmp_path / path.relative_to(out)).read_bytes() == path.read_bytes(), path.name
+
+
+def test_an_interrupted_run_leaves_no_half_files(tmp_path):
+    reproduce(["fig4-16"], tmp_path, progress=False)
+    before = {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()}
+
+    def broken() -> Result:
+        raise KeyboardInterrupt
+
+    entries = (*select(["fig4-16"], ENTRIES), Entry("bad", "bad", "ch4", broken))
+    with pytest.raises(KeyboardInterrupt):
+        reproduce(None, tmp_path, progress=False, entries=entries)
+    assert {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()} == before
+
+
+def test_a_place_that_cannot_be_written_is_said(tmp_path):
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(SomersaultError, match="another directory"):
+        reproduce(["table4-1"], tmp_path / "file", progress=False)
+
+
+@pytest.mark.slow
+def test_every_entry_runs_and_explains_what_does_not_hold(tmp_path):
+    claims = reproduce(None, tmp_path, progress=False)
+    assert len({claim.id for claim in claims}) == len(claims) > 150
+    bad = {claim.id for claim in claims if not claim.holds}
+    assert bad == {
+        "fig4-5.k1",
+        "fig4-5.k3",
+        "fig4-5.angle",
+        "fig4-9.range-low",
+        "sec4-3.positive-0.6",
+        "table4-3.k1",
+        "table4-3.k3",
+    }
+    assert all(claim.note for claim in claims if not claim.holds)

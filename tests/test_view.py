@@ -1,0 +1,97 @@
+"""Pictures are drawn without a window, and words in the page cannot break it."""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import sys
+
+import numpy as np
+
+from somersault.view import _charts as charts
+from somersault.view import _style as look
+from somersault.view._report import Section, page
+from somersault.view._sketch import simplest
+
+
+def test_importing_the_pictures_does_not_load_matplotlib():
+    code = "import sys, somersault.thesis; sys.exit('matplotlib' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code]).returncode == 0
+
+
+def test_figures_need_no_pyplot():
+    code = (
+        "import sys, io; from somersault.view import _style as s, _sketch as k\n"
+        "with s.style(): k.simplest().savefig(io.BytesIO(), format='png')\n"
+        "sys.exit('matplotlib.pyplot' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", code]).returncode == 0
+
+
+def test_style_leaves_settings_as_they_were():
+    import matplotlib
+
+    before = matplotlib.rcParams["font.size"], matplotlib.rcParams["svg.hashsalt"]
+    with look.style():
+        assert matplotlib.rcParams["svg.hashsalt"] == "somersault"
+    assert (matplotlib.rcParams["font.size"], matplotlib.rcParams["svg.hashsalt"]) == before
+
+
+def test_svg_repeats_byte_for_byte():
+    def drawn() -> bytes:
+        held = io.BytesIO()
+        with look.style():
+            simplest().savefig(held, format="svg", metadata={"Date": None})
+        return held.getvalue()
+
+    assert drawn() == drawn()
+
+
+def test_locus_draws_every_root():
+    values = np.linspace(0, 1, 5)
+    roots = np.array([[v + 1j, -v - 1j] for v in values])
+    with look.style():
+        ax = look.figure().add_subplot()
+        dots = charts.locus(ax, values, roots, arrows=(0.5,))
+        assert len(dots.get_offsets()) == roots.size
+        assert list(dots.get_array()) == list(np.repeat(values, 2))
+        heads = [t for t in ax.texts if t.get_text() == ""]
+        assert len(heads) == 0  # steps of 0.25 are too long to call a direction
+        charts.locus(ax, np.linspace(0, 1, 21), np.linspace(0, 1, 21)[:, None] * 1j, arrows=(0.5,))
+        head = next(t for t in ax.texts if t.get_text() == "")
+        assert head.xyann == (0.0, 0.5)
+        assert head.xy[1] > 0.5
+
+
+def test_a_filled_region_has_the_points_that_are_true():
+    with look.style():
+        ax = look.figure().add_subplot()
+        x, y = np.linspace(0, 1, 11), np.linspace(0, 2, 21)
+        charts.filled(ax, x, y, (y[:, None] > 0.95) & (x[None, :] > 0.45))
+        box = ax.collections[0].get_paths()[0].get_extents()
+    assert np.allclose([box.x0, box.y0, box.x1, box.y1], [0.45, 0.95, 1, 2], atol=0.01)
+
+
+def test_page_escapes_everything():
+    claim = {
+        "id": "<b>id",
+        "where": "<where>",
+        "claim": "a < b & c",
+        "thesis": "<script>alert(1)</script>",
+        "computed": 1.5,
+        "unit": "1",
+        "tolerance": 0.5,
+        "holds": False,
+        "note": '"note" <i>',
+    }
+    section = Section("<s>", "<t>", "<says>", "<found>", None, [claim], (("<h>",), [("<c>",)]))
+    text = page([section], [("<w>", "<p>", "<c>", "<y>")])
+    for bad in ("<script", "<b>id", "<where>", "<says>", "<found>", "<h>", "<c>", "<w>", "<i>"):
+        assert bad not in text, bad
+    assert "a &lt; b &amp; c" in text
+
+
+def test_page_counts_claims_and_marks_what_is_beyond_the_thesis():
+    text = page([Section("x", "X", "says", "found", None, [], None, beyond=True)], [])
+    assert "Beyond the thesis" in text
+    assert "Every claim holds." in text
