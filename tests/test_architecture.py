@@ -10,7 +10,7 @@ import pytest
 import somersault
 
 SOURCE = Path(somersault.__file__).parent
-ROOMS = ["attitude", "model", "dynamics", "stability", "view", "thesis", "cli"]
+ROOMS = ["attitude", "rigid", "model", "dynamics", "stability", "flight", "view", "thesis", "cli"]
 FOUNDATION = {"_errors", "_array", "_files"}
 MOST_LINES = 420
 

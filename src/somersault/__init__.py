@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from somersault import stability
     from somersault._errors import SomersaultError, SomersaultWarning
     from somersault.dynamics import Equations
+    from somersault.flight import Flight, JointTakeoff, Landing, Takeoff, fly
     from somersault.model import Body, Joint, Model, load, shipped
     from somersault.stability import LinearSpin, Mode, Spin, spin
 
@@ -32,6 +33,11 @@ _HOME = {
     "load": "somersault.model",
     "shipped": "somersault.model",
     "Equations": "somersault.dynamics",
+    "Flight": "somersault.flight",
+    "JointTakeoff": "somersault.flight",
+    "Landing": "somersault.flight",
+    "Takeoff": "somersault.flight",
+    "fly": "somersault.flight",
     "LinearSpin": "somersault.stability",
     "Mode": "somersault.stability",
     "Spin": "somersault.stability",
@@ -41,13 +47,18 @@ _HOME = {
 __all__ = [
     "Body",
     "Equations",
+    "Flight",
     "Joint",
+    "JointTakeoff",
+    "Landing",
     "LinearSpin",
     "Mode",
     "Model",
     "SomersaultError",
     "SomersaultWarning",
     "Spin",
+    "Takeoff",
+    "fly",
     "load",
     "shipped",
     "spin",

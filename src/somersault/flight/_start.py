@@ -44,9 +44,7 @@ def start(system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...], nomina
         omega = np.linalg.solve(inertia, to_inertial.T @ wanted - of_joints)
     h = to_inertial @ system.equations.momentum(q, _speeds(omega, u))[:3]
     rate = _nominal_rate(takeoff, nominal, h)
-    return Start(
-        quaternion, omega, q, u, h, tuple(_pretensioned(p, nominal, rate) for p in plans)
-    )
+    return Start(quaternion, omega, q, u, h, tuple(_pretensioned(p, nominal, rate) for p in plans))
 
 
 def _quaternion(takeoff: Takeoff) -> Array:

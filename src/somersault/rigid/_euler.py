@@ -72,7 +72,7 @@ def checked_omega(omega: ArrayLike) -> Array:
     found = np.asarray(omega, float)
     if found.shape != (3,) or not np.all(np.isfinite(found)):
         raise SomersaultError(
-            f"The angular velocity must be three finite numbers in rad/s, not {omega}."
+            f"The angular velocity must be three finite numbers in rad/s, not {omega!r}."
         )
     if not found.any():
         raise SomersaultError(

@@ -151,8 +151,9 @@ def growth_rates(
     """Largest growth rates, in units of Ω, for arrays of quantities that broadcast.
 
     Quantities are named "pose.JOINT" (rad), "stiffness.JOINT" and "damping.JOINT" (k/(Ω² I)
-    and b/(Ω I)), "mass.BODY", "com.BODY.1", "position.BODY.2", "inertia.BODY.11"; a mirrored
-    pair's common name sets both sides. `subsystem` names a coordinate and keeps only the decoupled part it is in.
+    and b/(Ω I)), "mass.BODY", "com.BODY.1", "position.BODY.2", "inertia.BODY.11"; a
+    mirrored pair's common name sets both sides. `subsystem` names a coordinate and keeps only
+    the decoupled part it is in.
     """
     model = load(model)
     require_free(model)

@@ -103,9 +103,8 @@ def fig_4_20() -> Result:
         "and the whole body's inertias fixed, the region follows the middle of figure 4-10 "
         f"from {middle[have][0]:.2f} at Γ = {angles[have].min():.2f} up to "
         f"{np.nanmax(middle):.2f} and down "
-        f"again; it holds {100 * size:.0f} % of its area. Arms that reach further from the "
-        f"centre of "
-        "mass, as a human's shoulders make them, widen the range.",
+        f"again; it holds {100 * size:.0f} % of its area. The human's arms turn about shoulders "
+        "away from the centre of mass, which this model leaves out.",
         claims,
         _draw_4_20(ours),
     )

@@ -15,7 +15,6 @@ from somersault.thesis._furrer import (
     ANGLE,
     GROWS,
     HIGH,
-    LOW,
     MODEL,
     STIFFNESS,
     THREE,
@@ -23,6 +22,7 @@ from somersault.thesis._furrer import (
     both,
     edges,
     region,
+    undivided_growth,
 )
 
 if TYPE_CHECKING:
@@ -40,7 +40,6 @@ def fig_4_9() -> Result:
     positive = five[STIFFNESS] > 1e-9
     share = float(five.sum() / three.sum())
     share_positive = float((five & positive).sum() / (three & positive).sum())
-    edge = edges(FINE)
     low, high = _positive_range()
     open_, close = _closing(0.5, 0.7), _closing(2.6, 2.4)
     return Result(
@@ -58,7 +57,7 @@ def fig_4_9() -> Result:
         (
             *_range_claims(low, high),
             *_share_claims(share, share_positive),
-            _same_top(edge.upper5, edge.upper3),
+            _same_top(),
         ),
         _draw_4_9(),
     )
@@ -141,7 +140,7 @@ def _range_claims(low: float, high: float) -> list[Claim]:
 
 
 def _share_claims(share: float, share_positive: float) -> list[Claim]:
-    five, three = both(), region(THREE).stable
+    wrong, count = _undivided()
     lost = 100 * (1 - share)
     edge = edges(FINE)
     trimmed = FINE[edge.lower5 > edge.lower3 + 1e-9]
@@ -152,11 +151,9 @@ def _share_claims(share: float, share_positive: float) -> list[Claim]:
             "§4.3.2",
             "the stable points of figure 4-9 are those of 4-10 and of 4-11",
             "an intersection",
-            "the joint chart equals the intersection at every point"
-            if _joint_equals()
-            else "the joint chart differs from the intersection",
-            _joint_equals(),
-            "Section 4.3's table checks the same with the roots of the undivided system.",
+            f"the undivided system's roots differ from it at {wrong} of {count} points",
+            wrong == 0,
+            "All ten roots of the 5-d.o.f. system as it stands, against the two charts.",
         ),
         statement(
             "fig4-9.few-fail",
@@ -179,29 +176,28 @@ def _share_claims(share: float, share_positive: float) -> list[Claim]:
             area,
             0.75 <= share < 1,
         ),
-        statement(
-            "fig4-9.inside",
-            "§4.3.2",
-            "no condition stabilises the 5-by-5 system without stabilising the 3-by-3 system",
-            "an intersection",
-            f"{int((five & ~three).sum())} of {int(five.sum())} points do",
-            int((five & ~three).sum()) == 0,
-        ),
     ]
 
 
-def _joint_equals() -> bool:
-    """The chart of the whole system, asked for as one, against the two parts."""
-    whole = st.chart(
-        MODEL, (ANGLE, np.linspace(0, 3, 101)), (STIFFNESS, np.linspace(LOW, HIGH, 121))
-    )
-    parts = both()[::5, ::3]
-    return bool(np.array_equal(whole.stable.values, parts.values))
+def _undivided() -> tuple[int, int]:
+    """How many of a grid's points the roots of the undivided system judge differently."""
+    expected = both()[::10, ::10]
+    wrong = 0
+    for angle in expected[ANGLE].values:
+        growth = undivided_growth(round(float(angle), 9), expected[STIFFNESS].values)
+        # The double zero of the somersault's drift is smeared by rounding to about 1e-7.
+        stable = growth <= 3 * GROWS
+        wrong += int((stable != expected.sel({ANGLE: angle}).values).sum())
+    return wrong, expected.size
 
 
-def _same_top(upper5: Array, upper3: Array) -> Claim:
-    have = ~np.isnan(upper5)
-    same = np.abs(upper5[have] - upper3[have]) < 1e-9
+def _same_top() -> Claim:
+    """Whether the stiffest stable spring is the same in both charts."""
+    tops = []
+    for stable in (both().values, region(THREE).stable.values):
+        tops.append(stable.shape[0] - 1 - np.argmax(stable[::-1], axis=0))
+    have = both().values.any(0)
+    same = tops[0][have] == tops[1][have]
     return statement(
         "fig4-9.top",
         "§4.3.2",

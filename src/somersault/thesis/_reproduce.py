@@ -76,6 +76,8 @@ def _save(figure: Any, stem: Path) -> None:
         ".svg": {"metadata": {"Date": None, "Creator": None}},
         ".png": {"dpi": 160, "metadata": {"Software": None}},
     }
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # laid out once, and the same in both files
     for ending, options in formats.items():
         held = io.BytesIO()
         figure.savefig(held, format=ending[1:], **options)

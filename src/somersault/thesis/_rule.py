@@ -39,11 +39,10 @@ def fig_4_17() -> Result:
             f"inside the stable range at {100 * inside.mean():.0f} % of the arm angles that have "
             f"one; correlation with its middle {fit:.3f}",
             inside.mean() > 0.75 and fit > 0.95,
-            f"The rule lies {runs}, where the range is a blade; elsewhere inside, always in the "
-            f"upper half: {off.min():+.2f} to {off[inside].max():+.2f} of the width from the "
-            f"middle, "
-            f"{np.mean(off[inside]):+.2f} on average. The upper edge is exactly the rule plus "
-            "k13²/(2 I_sh k11), so the rule never overshoots.",
+            f"The rule lies {runs}, where the range is a blade; elsewhere inside, "
+            f"{off[inside].min():+.2f} to {off[inside].max():+.2f} of the range's width from its "
+            f"middle, {np.mean(off[inside]):+.2f} on average. The upper edge is exactly the rule "
+            "plus k13²/(2 I_sh k11), so the rule never overshoots.",
         ),
         number(
             "fig4-17.straight",
@@ -69,7 +68,7 @@ def fig_4_17() -> Result:
         "centrifugal forces on the arm: the region “seems to be defined by the negative of this "
         "centrifugal force term”.",
         f"The rule is inside the stable range at {100 * inside.mean():.0f} % of the arm angles "
-        "that have one, in its upper half. In closed form the upper edge is the rule plus "
+        "that have one, on average above its middle. The upper edge is exactly the rule plus "
         "k13²/(2 I_sh k11): what the arm's coupling to the body allows beyond it.",
         claims,
         _draw_4_17(),

@@ -205,7 +205,7 @@ def _equation_4_11() -> list[Claim]:
             "1 − kl1: a negative twist rate lifts the arm, which corrects the tilt.",
         ),
         statement(
-            "table4-2.k33",
+            "table4-2.k33-negative",
             "§4.4.2",
             "with K_sh = 0 the 3-3 term of K is negative: centrifugal forces drive the arm away",
             "negative",

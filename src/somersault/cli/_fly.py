@@ -1,0 +1,85 @@
+"""`somersault fly SPEC.toml`: one free flight."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from somersault.flight import Flight
+
+NAME = "fly"
+HELP = "One free flight, from a takeoff described in a TOML file."
+EXAMPLES = """examples:
+  somersault fly examples/layout.toml
+  somersault fly examples/layout.toml --out layout.nc --json
+
+A SPEC:
+  model = "furrer"              # a shipped name or a file
+  duration = 5.8                # s
+  [takeoff]
+  tilt = 0.01                   # rad
+  spin = 8.64                   # rad/s of the nominal steady spin
+  [joints.left_shoulder]
+  motion = "sprung"             # locked, free, sprung, prescribed
+  angle = 1.4                   # rad
+  stiffness = 34.48             # N m/rad
+  hold = true                   # pretensioned to balance the nominal spin"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.add_argument("spec", type=Path, metavar="SPEC.toml", help="the flight")
+    parser.add_argument(
+        "--out", type=Path, metavar="FILE", help="write its history, .nc (NetCDF) or .csv"
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON for programs")
+
+
+def run(chosen: argparse.Namespace) -> None:
+    """Fly, write the history, print how it ended."""
+    from somersault.flight import fly, read_spec
+
+    spec = read_spec(chosen.spec)
+    flight = fly(spec.model, spec.takeoff, spec.duration, **spec.options)
+    if chosen.out is not None:
+        flight.save(chosen.out)
+    if chosen.json:
+        print(json.dumps(_record(flight)))
+    else:
+        print("\n".join(_page(flight)))
+
+
+def _record(flight: Flight) -> dict[str, Any]:
+    end = flight.landing
+    return {
+        "final": {
+            "time": end.time,
+            "somersault": end.somersault,
+            "tilt": end.tilt,
+            "twist": end.twist,
+            "quaternion": end.quaternion.tolist(),
+            "angular_velocity": end.angular_velocity.tolist(),
+            "joints": end.joints,
+        },
+        "momentum_drift": flight.momentum_drift,
+        "energy_drift": flight.energy_drift,
+        "steps": flight.steps,
+        "ended": end.ended,
+    }
+
+
+def _page(flight: Flight) -> list[str]:
+    end = flight.landing
+    turn = 6.283185307179586
+    drift = flight.energy_drift
+    kept = "not kept (damped or driven)" if drift is None else f"kept to {drift:.1e}"
+    return [
+        f"{flight.system.model.name}, {end.time:.4g} s, ended by {end.ended}, {flight.steps} steps",
+        f"  somersault {end.somersault / turn:.4f} turns, tilt {end.tilt:.4f} rad, "
+        f"twist {end.twist / turn:.4f} turns",
+        *(f"  {name} {value:.4f}" for name, value in end.joints.items()),
+        f"  angular momentum kept to {flight.momentum_drift:.1e}, energy {kept}",
+    ]

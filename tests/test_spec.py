@@ -1,0 +1,149 @@
+"""SPEC files: what they mean, and that a mistake names its key."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import somersault as so
+from somersault.cli import main
+from somersault.flight import parse_spec, read_spec
+
+LAYOUT = Path(__file__).parents[1] / "examples" / "layout.toml"
+CONTRACT = """
+model = "furrer"
+duration = 2.0
+gravity = [0.0, 0.0, -9.81]
+accuracy = 1e-9
+[takeoff]
+somersault = 0.0
+tilt = 0.01
+twist = 0.0
+spin = 8.64
+velocity = [0.0, 0.0, 5.0]
+[joints.left_shoulder]
+motion = "sprung"
+angle = 1.4
+rate = 0.0
+stiffness = 44.0
+damping = 0.0
+hold = true
+[joints.right_shoulder]
+motion = "prescribed"
+times = [0.0, 0.2, 1.0]
+angles = [0.0, -1.2, -1.2]
+"""
+
+
+def test_the_contract_flies(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    spec = tmp_path / "spec.toml"
+    spec.write_text(CONTRACT)
+    out = tmp_path / "flight.nc"
+    assert main(["fly", str(spec), "--out", str(out), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert set(found) == {"final", "momentum_drift", "energy_drift", "steps", "ended"}
+    assert set(found["final"]) >= {
+        "somersault", "tilt", "twist", "quaternion", "angular_velocity", "joints",
+    }  # fmt: skip
+    assert found["momentum_drift"] < 1e-10
+    assert found["energy_drift"] is None  # one arm is driven
+    assert found["ended"] == "duration"
+    assert found["final"]["joints"]["right_shoulder"] == pytest.approx(-1.2, abs=1e-12)
+    xarray = pytest.importorskip("xarray")
+    with xarray.open_dataset(out, engine="h5netcdf") as data:
+        assert float(data["somersault"][-1]) == found["final"]["somersault"]
+        assert float(data["centre_of_mass"][-1, 2]) == pytest.approx(5 * 2 - 9.81 * 2)
+        assert data["somersault"].attrs["units"] == "rad"
+
+
+def test_the_example_is_eight_stable_somersaults(capsys: pytest.CaptureFixture) -> None:
+    assert main(["fly", str(LAYOUT), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["final"]["somersault"] == pytest.approx(16 * np.pi, abs=0.1)
+    assert abs(found["final"]["twist"]) < 0.2
+    assert max(found["momentum_drift"], found["energy_drift"]) < 1e-10
+
+
+def test_csv_has_a_row_a_sample(tmp_path: Path) -> None:
+    spec = read_spec(LAYOUT)
+    flight = so.fly(spec.model, spec.takeoff, spec.duration, samples=11)
+    flight.save(tmp_path / "f.csv")
+    lines = (tmp_path / "f.csv").read_text().splitlines()
+    assert len(lines) == 12
+    assert len({line.count(",") for line in lines}) == 1
+    assert lines[0].startswith("time [s],somersault [rad],tilt [rad]")
+    assert float(lines[-1].split(",")[1]) == flight.landing.somersault
+    with pytest.raises(so.SomersaultError, match=r"\.nc"):
+        flight.save(tmp_path / "f.xls")
+
+
+def test_a_model_file_is_found_beside_the_spec(tmp_path: Path) -> None:
+    source = Path(so.__file__).parent / "model/shipped/book.xml"
+    (tmp_path / "mine.xml").write_text(source.read_text())
+    (tmp_path / "s.toml").write_text('model = "mine.xml"\n[takeoff]\nspin = 3.0\n')
+    assert read_spec(tmp_path / "s.toml").model == str(tmp_path / "mine.xml")
+
+
+BAD = {
+    "model": "duration = 1.0",
+    "modell": 'modell = "furrer"',
+    "duration": 'model = "furrer"\nduration = "long"',
+    "duration 0": 'model = "furrer"\nduration = 0',
+    "accuracy": 'model = "furrer"\naccuracy = 1.0',
+    "gravity": 'model = "furrer"\ngravity = [1.0, 2.0]',
+    "samples": 'model = "furrer"\nsamples = 2.5',
+    "until": 'model = "furrer"\nuntil = "lunch"',
+    "takeoff": 'model = "furrer"\ntakeoff = 3',
+    "takeoff.spinn": 'model = "furrer"\n[takeoff]\nspinn = 3.0',
+    "tilt": 'model = "furrer"\n[takeoff]\ntilt = nan',
+    "spin": 'model = "furrer"\n[takeoff]\nspin = 0.0',
+    "angular_velocity": 'model = "furrer"\n[takeoff]\nangular_velocity = [1.0]',
+    "elbow": 'model = "furrer"\n[joints.elbow]\nmotion = "free"',
+    "joints.left_shoulder.mode": 'model = "furrer"\n[joints.left_shoulder]\nmode = "free"',
+    "flying": 'model = "furrer"\n[joints.left_shoulder]\nmotion = "flying"',
+    "increase": 'model = "furrer"\n[joints.left_shoulder]\nmotion = "prescribed"\n'
+    "times = [0.0, 0.0]\nangles = [0.0, 1.0]",
+    "limits": 'model = "furrer"\n[joints.left_shoulder]\nmotion = "prescribed"\n'
+    "times = [0.0, 1.0]\nangles = [0.0, 9.0]",
+    "not TOML": "model = ",
+}
+
+
+@pytest.mark.parametrize("naming", BAD)
+def test_a_mistake_names_its_key(
+    naming: str, tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
+    spec = tmp_path / "spec.toml"
+    spec.write_text(BAD[naming])
+    assert main(["fly", str(spec), "--out", str(tmp_path / "out.nc")]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.count("\n") == 1
+    assert naming.split()[0] in err
+    assert [p.name for p in tmp_path.iterdir()] == ["spec.toml"]
+
+
+@settings(max_examples=200, deadline=None, derandomize=True)
+@given(
+    st.dictionaries(
+        st.sampled_from(["model", "duration", "takeoff", "joints", "gravity", "samples", "x"]),
+        st.recursive(
+            st.one_of(st.none(), st.booleans(), st.floats(), st.text(max_size=3), st.integers()),
+            lambda inner: st.one_of(
+                st.lists(inner, max_size=3),
+                st.dictionaries(
+                    st.sampled_from(["tilt", "spin", "left_shoulder", "angle", "?"]), inner
+                ),
+            ),
+            max_leaves=5,
+        ),
+    )
+)
+def test_any_table_is_read_or_refused(given_: dict) -> None:
+    try:
+        parse_spec(given_, Path())
+    except so.SomersaultError as mistake:
+        assert "\n" not in str(mistake)
