@@ -72,6 +72,14 @@ def test_rigid_body_roots_and_energy(spread: tuple[float, float, float], axis: s
     assert {"minor": high < 0, "intermediate": low < 0 < high, "major": low > 0}[axis]
 
 
+@pytest.mark.parametrize(("gap", "stable"), [(3e-10, False), (3e-14, True)])
+def test_growth_counts_from_a_millionth_of_the_spin(gap: float, stable: bool) -> None:
+    """√(gap/3) = 1e-5 is a growth; 1e-7, what rounding makes of a double root, is none."""
+    system = spin(rigid(np.array([1.0, 1.0 + gap, 1.5])), 2).linear()
+    assert system.growth_rate == pytest.approx(np.sqrt(gap / 3), rel=0.1, abs=1e-7)
+    assert system.stable == stable
+
+
 def rigid(inertias: np.ndarray) -> Model:
     return Model("rigid", True, (Body("body", -1, 1.0, ORIGIN, as_matrix(np.diag(inertias))),))
 

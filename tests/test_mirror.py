@@ -21,6 +21,7 @@ from somersault.model import Body, Joint, Model, load
 from somersault.model._mirror import Pair, common_name, mirror_pairs
 from somersault.model._pose import pose
 from somersault.model._weld import as_matrix, as_vector
+from somersault.stability import spin
 
 HUMANOIDS = {
     "gymnasium": "envs/mujoco/assets/humanoid.xml",
@@ -226,6 +227,34 @@ def test_a_pose_by_the_common_name_is_symmetric(seed: int, references: bool) -> 
     q = pose(model, {pair.name: rng.normal() * 0.4 for pair in mirror_pairs(model)})
     whole = inertia(to_mujoco(model), model, q)
     assert np.abs(np.delete(whole[normal], normal)).max() < 1e-6 * np.abs(whole).max()
+
+
+def test_what_a_mirror_keeps_apart_stays_apart_in_the_equations() -> None:
+    """Spins across the plane: tilt and twist go with what is antisymmetric (section 4.2)."""
+    body, left, right = load("furrer").bodies
+    nod = Joint("nod", "hinge", axis=(0.0, 1.0, 0.0))
+    shake = Joint("shake", "hinge", axis=(0.0, 0.0, 1.0))
+    head = replace(left, name="head", position=(0.0, 0.0, 0.5), joints=(nod, shake))
+    legs = [
+        replace(left, name=f"{side}_leg", position=(0.0, y, -0.2), joints=(_hip(side),))
+        for side, y in (("left", 0.1), ("right", -0.1))
+    ]
+    whole = Model("whole", True, (body, left, right, head, *legs))
+    assert {p.name: p.sign for p in mirror_pairs(whole)} == {
+        "shoulder": -1,
+        "hip": 1,
+        "nod": 1,
+        "shake": -1,
+    }
+    system = spin(whole, 2, {"shoulder": 1.2, "hip": 0.4, "nod": 0.3}).linear()
+    assert [set(group) for group in system.subsystems] == [
+        {"tilt", "twist", "antisymmetric shoulder", "antisymmetric hip", "shake"},
+        {"somersault", "symmetric shoulder", "symmetric hip", "nod"},
+    ]
+
+
+def _hip(side: str) -> Joint:
+    return Joint(f"{side}_hip", "hinge", axis=(0.0, 1.0, 0.0))
 
 
 @pytest.mark.parametrize(

@@ -304,13 +304,15 @@ def test_stable_ranges_end_where_stability_does() -> None:
 
 
 def test_a_root_locus_is_the_roots_one_after_the_other() -> None:
-    stiffness = np.linspace(-2, 4, 13)
-    fixed = {"pose.shoulder": 1.3, "damping.shoulder": 0.1}
-    locus = root_locus("furrer", ("stiffness.shoulder", stiffness), fixed=fixed)
-    spun = spin("furrer", 2, {"shoulder": 1.3})
+    spun, stiffness = tree(4), np.linspace(-2, 4, 7)
+    first, *_, last = spun.model.joints
+    fixed = {f"pose.{name}": value for name, value in pose_of(spun).items()}
+    fixed |= {f"damping.{first.name}": 0.3}
+    along = (f"stiffness.{last.name}", stiffness)
+    locus = root_locus(spun.model, along, fixed=fixed, axis=spun.axis)
     for row, k in enumerate(stiffness):
-        roots = locus["real"].values[row] + 1j * locus["imaginary"].values[row]
-        assert_same_roots(spun.linear({"shoulder": k}, {"shoulder": 0.1}).roots, roots, 1e-7)
+        roots = locus.growth.values[row] + 1j * locus.frequency.values[row]
+        assert_same_roots(spun.linear({last.name: k}, {first.name: 0.3}).roots, roots, 1e-7)
 
 
 def test_the_parts_are_the_whole() -> None:
@@ -375,7 +377,9 @@ MISTAKES = {
     "'poise.x'": lambda: chart("furrer", ("poise.x", [1.0]), ("pose.shoulder", [1.0])),
     "mass.elbow": lambda: chart("furrer", ("mass.elbow", [1.0]), ("pose.shoulder", [1.0])),
     "no coordinate 'yaw'": lambda: root_locus("furrer", ("pose.shoulder", [1]), subsystem="yaw"),
-    "pose.shoulder has": lambda: stable_ranges("furrer", ("pose.shoulder", 0.0, np.nan)),
+    "stable ranges of pose.shoulder": lambda: stable_ranges(
+        "furrer", ("pose.shoulder", 0.0, np.nan)
+    ),
     "fixed base": lambda: spin(
         Model("post", False, (replace(load("simplest").bodies[1], parent=-1),))
     ),

@@ -103,10 +103,7 @@ def angles_from_quaternion(quaternion: ArrayLike) -> Array:
     The angles always give the attitude back to rounding. At Θ = ±π/2 only Φ ∓ Ψ is an
     attitude: there the twist is 0 and the somersault has it all.
     """
-    half_sum, half_difference, tilt, free = _halves(np.asarray(quaternion, float))
-    high, low = free & (tilt > 0), free & (tilt < 0)
-    half_sum = np.where(high, half_difference, half_sum)
-    half_difference = np.where(low, half_sum, half_difference)
+    half_sum, half_difference, tilt, _ = _halves(np.asarray(quaternion, float))
     return _from_halves(half_sum, half_difference, tilt)
 
 
@@ -192,13 +189,19 @@ def _halves(q: Array) -> tuple[Array, Array, Array, Array]:
     """(Φ + Ψ)/2, (Φ − Ψ)/2, Θ, and whether one of the halves is free (Θ = ±π/2).
 
     From w ± x and y ∓ z, which are the cosine and sine of (Φ ∓ Ψ)/2 times cos Θ/2 ± sin Θ/2:
-    no digits are lost near the singularity.
+    no digits are lost near the singularity. A free half is that of no twist.
     """
     w, x, y, z = np.moveaxis(q, -1, 0)
     plus, minus = np.hypot(w + x, y - z), np.hypot(w - x, y + z)
     tilt = 2 * np.arctan2(plus - minus, plus + minus)
     free = np.minimum(plus, minus) <= SINGULAR * np.maximum(plus, minus)
-    return np.arctan2(y + z, w - x), np.arctan2(y - z, w + x), tilt, free
+    half_sum, half_difference = np.arctan2(y + z, w - x), np.arctan2(y - z, w + x)
+    return (
+        np.where(free & (tilt > 0), half_difference, half_sum),
+        np.where(free & (tilt < 0), half_sum, half_difference),
+        tilt,
+        free,
+    )
 
 
 def _from_halves(half_sum: Array, half_difference: Array, tilt: Array) -> Array:

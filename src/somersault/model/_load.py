@@ -29,7 +29,12 @@ def load(source: str | os.PathLike[str] | Model) -> Model:
     """
     if isinstance(source, Model):
         return source
-    name = os.fspath(source)
+    try:
+        name = os.fspath(source)
+    except TypeError:
+        raise SomersaultError(
+            f"{source!r} is no model; give a shipped model's name, a file, or a Model"
+        ) from None
     if name in shipped():
         return _shipped(name)
     path = Path(name)
@@ -53,7 +58,7 @@ def _shipped(name: str) -> Model:
 
 def _read(path: Path) -> Model:
     ending = path.suffix.lower()
-    if not path.is_file():
+    if not os.path.isfile(path):  # which, unlike pathlib, takes any name
         if ending == "":
             raise SomersaultError(
                 f"no model is called {str(path)!r}: give a file, or one of {', '.join(shipped())}"

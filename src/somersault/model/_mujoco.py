@@ -36,12 +36,19 @@ def _root_link(path: Path) -> str | None:
     """The URDF link that is nobody's child, or None if it is the ground."""
     try:
         robot = ElementTree.parse(path).getroot()
-    except (ElementTree.ParseError, ValueError, OSError):
+    except (ElementTree.ParseError, ValueError, OSError, LookupError):
         return None  # MuJoCo's parser will say what is wrong, and where
+    for element in robot.iter():
+        element.tag = str(element.tag).rpartition("}")[2]  # whatever the namespace
     children = {child.get("link") for child in robot.findall("./joint/child")}
     names = [link.get("name") for link in robot.findall("./link")]
-    root = next((name for name in names if name not in children), None)
-    return None if root == "world" else root
+    roots = [name for name in names if name not in children]
+    if len(roots) > 1:
+        raise SomersaultError(
+            f"{path.name} has {len(roots)} links without a parent, {roots[0]!r} and {roots[1]!r} "
+            "among them; a robot is one tree, so join them or remove one"
+        )
+    return roots[0] if roots and roots[0] != "world" else None
 
 
 def _read(path: Path, free_root: str | None) -> Model:
@@ -51,18 +58,27 @@ def _read(path: Path, free_root: str | None) -> Model:
         raise SomersaultError(
             f"{path.name} is larger than 50 MB, which no model is; check the file"
         )
+    mujoco.set_mju_user_warning(lambda _: None)  # else it writes a log where one stands
     try:
         spec = mujoco.MjSpec.from_file(str(path))
         if free_root is not None:
             spec.compiler.fusestatic = False  # the root would vanish into the ground
-            spec.body(free_root).add_freejoint()
+            root = spec.body(free_root)
+            if root is None:
+                raise ValueError(f"its root link {free_root!r} is not found; save it as UTF-8")
+            root.add_freejoint()
         compiled = spec.compile()
     except (ValueError, RuntimeError, OSError, AttributeError, mujoco.FatalError) as error:
         raise SomersaultError(
             f"{path.name} cannot be read as a model: {_one_line(error)}; correct the file"
         ) from None
-    _refuse(path.name, compiled)
-    bodies, free = _bodies(path.name, compiled)
+    try:
+        _refuse(path.name, compiled)
+        bodies, free = _bodies(path.name, compiled)
+    except UnicodeDecodeError:
+        raise SomersaultError(
+            f"{path.name} has names that are not UTF-8; save it as UTF-8"
+        ) from None
     return Model(path.stem, free, merge_welded(bodies, free), _ignored(compiled))
 
 
@@ -97,7 +113,8 @@ def _bodies(file: str, m: Any) -> tuple[list[Body], bool]:
                 "world; move the body there"
             )
         order = ours + [b for b in moving if b not in ours]
-    index = {0: GROUND} | {b: k for k, b in enumerate(order)}
+    still = {b: GROUND for b in range(m.nbody) if m.body_weldid[b] == 0}
+    index = still | {b: k for k, b in enumerate(order)}
     return [_body(m, b, index[int(m.body_parentid[b])], b in bases) for b in order], bool(bases)
 
 
@@ -168,6 +185,12 @@ def _refuse(file: str, m: Any) -> None:
 
     for j in range(m.njnt):
         _refuse_joint(file, m, j)
+    if np.any(m.body_gravcomp):
+        b = int(np.flatnonzero(m.body_gravcomp)[0])
+        raise SomersaultError(
+            f"{file}: body {m.body(b).name or b!r} has gravcomp, which would hold it up in the "
+            "air; set it to 0"
+        )
     if m.neq:
         name = m.equality(0).name
         raise SomersaultError(
@@ -176,7 +199,7 @@ def _refuse(file: str, m: Any) -> None:
         )
     if m.nflex:
         raise SomersaultError(
-            f"{file}: flex {m.flex(0).name or 0!r} is a deformable body; replace it by rigid ones"
+            f"{file}: flex {_flex_name(m)!r} is a deformable body; replace it by rigid ones"
         )
     if m.nplugin:
         raise SomersaultError(
@@ -212,6 +235,12 @@ def _refuse(file: str, m: Any) -> None:
             f"{file}: option density, viscosity or wind asks for a fluid's drag, which flights do "
             "not have; set them to 0"
         )
+
+
+def _flex_name(m: Any) -> str | int:
+    import mujoco
+
+    return mujoco.mj_id2name(m, mujoco.mjtObj.mjOBJ_FLEX, 0) or 0
 
 
 def _refuse_joint(file: str, m: Any, j: int) -> None:

@@ -22,15 +22,13 @@ def pose(model: Model, angles: Mapping[str, ArrayLike] | None) -> Array:
     one outside the joint's limits.
     """
     given = {
-        name: np.asarray(value, float)
+        name: _numbers(name, value)
         for name, value in spread(model, angles or {}, mirrored=True).items()
     }
     shape = np.broadcast_shapes(*(value.shape for value in given.values()))
     q = np.broadcast_to(model.home, (*shape, len(model.home))).copy()
     turns: dict[str, Array] = {}
     for name, value in given.items():
-        if not np.all(np.isfinite(value)):
-            raise SomersaultError(f"pose {name}: angles must be finite numbers")
         joint = _owner(model, name)
         if joint.kind == "ball":
             own = turns.setdefault(joint.name, np.zeros((*shape, 3)))
@@ -43,6 +41,16 @@ def pose(model: Model, angles: Mapping[str, ArrayLike] | None) -> Array:
         vector = np.sinc(half / np.pi) / 2 * turn
         q[..., model.coordinate_slice(name)] = np.concatenate([np.cos(half), vector], -1)
     return q
+
+
+def _numbers(name: str, value: ArrayLike) -> Array:
+    try:
+        numbers = np.asarray(value, float)
+    except (TypeError, ValueError):
+        numbers = np.array(np.nan)
+    if not np.all(np.isfinite(numbers)):
+        raise SomersaultError(f"pose {name} is {value!r}; angles must be finite numbers")
+    return numbers
 
 
 def _owner(model: Model, name: str) -> Joint:
@@ -80,9 +88,19 @@ def spread(
     for name, value in values.items():
         if name in pairs and name not in model.speeds:
             pair = pairs[name]
-            result[model.speeds[pair.left]] = value
-            sign = pair.sign if mirrored else 1
-            result[model.speeds[pair.right]] = sign * np.asarray(value, float)
+            left, right = model.speeds[pair.left], model.speeds[pair.right]
+            both = {left: value, right: value}
+            if mirrored:  # about the references, which are each other's image
+                from_left = np.asarray(value, float) - _reference(model, left)
+                both[right] = _reference(model, right) + pair.sign * from_left
         else:
-            result[name] = value
+            both = {name: value}
+        for speed in both:
+            if speed in result:
+                raise SomersaultError(f"{speed} is given twice, once as {name}; give it once")
+        result |= both
     return result
+
+
+def _reference(model: Model, speed: str) -> float:
+    return next((joint.reference for joint in model.joints if joint.name == speed), 0.0)

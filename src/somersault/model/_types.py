@@ -185,6 +185,12 @@ def _check(model: Model) -> None:
             raise SomersaultError(
                 f"{model.name} has two {what} elements named {twice!r}; give each its own name"
             )
+    if "" in [*(body.name for body in model.bodies), *model.speeds]:
+        raise SomersaultError(f"{model.name} has a body or joint without a name; name it")
+    if len(set(model.speeds)) < len(model.speeds):
+        raise SomersaultError(
+            f"{model.name} has a joint named like a part of a ball joint (x.1); rename it"
+        )
     for index, body in enumerate(model.bodies):
         _check_tree(model, index, body)
         _check_body(model, body)
@@ -249,6 +255,8 @@ def _check_body(model: Model, body: Body) -> None:
 
 def _check_joint(model: Model, joint: Joint) -> None:
     where = f"{model.name}: joint {joint.name!r}"
+    if joint.kind not in ("hinge", "slide", "ball"):
+        raise SomersaultError(f"{where} is a {joint.kind!r}; joints are hinge, slide or ball")
     numbers = [*joint.axis, *joint.anchor, joint.reference, joint.rest]
     numbers += [joint.stiffness, joint.damping, joint.armature, *(joint.limits or ())]
     if not all(map(math.isfinite, numbers)):

@@ -45,6 +45,7 @@ class _Lump:
         return replace(body, mass=mass, com=as_vector(com), inertia=as_matrix(inertia))
 
 
+@np.errstate(over="ignore", invalid="ignore")  # numbers out of range are refused by `Model`
 def merge_welded(bodies: list[Body], free: bool) -> tuple[Body, ...]:
     """The same mechanism with every body without joints merged into its parent.
 

@@ -22,7 +22,7 @@ _ALONG = 1e-14  # sine of the angle to inertial axis 2 below which h counts as l
 _STEP = 0.02  # rad of turning between samples where turns are counted along the path
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, init=False)
 class RigidMotion:
     """Torque-free motion of a body with principal inertias about its axes, from t = 0 on.
 
@@ -38,14 +38,19 @@ class RigidMotion:
     """I1, I2, I3 (3,), kg m²."""
     omega0: Array
     """ω at t = 0 in body axes (3,), rad/s."""
-    attitude0: ArrayLike = (1.0, 0.0, 0.0, 0.0)
-    """Quaternion (4,) at t = 0, body to inertial; it is normalised."""
+    attitude0: Array
+    """Unit quaternion (4,) at t = 0, body to inertial."""
 
-    def __post_init__(self) -> None:
-        put = object.__setattr__
-        put(self, "inertias", _fixed(checked_inertias(self.inertias)))
-        put(self, "omega0", _fixed(checked_omega(self.omega0)))
-        put(self, "attitude0", _fixed(_unit_quaternion(self.attitude0)))
+    def __init__(
+        self,
+        inertias: ArrayLike,
+        omega0: ArrayLike,
+        attitude0: ArrayLike = (1.0, 0.0, 0.0, 0.0),
+    ) -> None:
+        put = object.__setattr__  # the class is frozen
+        put(self, "inertias", _fixed(checked_inertias(inertias)))
+        put(self, "omega0", _fixed(checked_omega(omega0)))
+        put(self, "attitude0", _fixed(_unit_quaternion(attitude0)))
 
     @classmethod
     def from_momentum(
@@ -111,7 +116,7 @@ class RigidMotion:
         if self.omega0[0] or self.omega0[1] or product <= 0:
             return rate, 0.0
         circling = math.copysign(math.sqrt(product / (one * two)), one - three) * rate
-        return rate - circling, math.copysign(circling, circling * self.omega0[2])
+        return rate - circling, math.copysign(circling, circling )
 
     @property
     def twists_per_somersault(self) -> float:

@@ -14,6 +14,7 @@ import numpy as np
 from somersault._array import Array
 
 _CONVERGED = 1e-8  # of the arithmetic–geometric mean; one more step squares it
+_HYPERBOLIC = 1e-9  # k′ (or cn + dn) whose square is lost beside 1
 _SMALL = 1e-100  # below it sn u = u and squares of cotangents would overflow
 
 
@@ -85,6 +86,8 @@ def first_kind(sn: float, cn: float, dn: float) -> float:
     """u in [−K, K] at which the functions have these values (cn ≥ 0), by Carlson's R_F."""
     from scipy.special import elliprf  # here, so that a verdict on stability loads no scipy
 
+    if cn + dn < _HYPERBOLIC:
+        return math.copysign(math.log(4) - math.log(cn + dn), sn)
     return float(sn * elliprf(cn * cn, dn * dn, 1.0))
 
 
@@ -92,10 +95,12 @@ def third_kind(at: Elliptic, n: float, kc: float) -> Array:
     """∫ n sn²/(1 + n sn²) du from 0 to u, which is u − Π, for n ≥ 0 (A.4), by Carlson's R_J."""
     from scipy.special import elliprj
 
-    if kc == 0:
-        root = math.sqrt(n)
-        return (n * at.v - root * np.arctan(root * at.sn)) / (1 + n)
-    part = n / 3 * at.sn**3 * elliprj(at.cn**2, at.dn**2, 1.0, 1 + n * at.sn**2)
+    if kc < _HYPERBOLIC:
+        part = _hyperbolic(at.v, at.sn, n)
+    else:
+        part = n / 3 * at.sn**3 * elliprj(at.cn**2, at.dn**2, 1.0, 1 + n * at.sn**2)
+    if not np.any(at.turns):
+        return part
     return part + 2 * at.turns * complete_third_kind(n, kc)
 
 
@@ -103,4 +108,12 @@ def complete_third_kind(n: float, kc: float) -> float:
     """K − Π(n): the integral of `third_kind` up to K, for k′ > 0."""
     from scipy.special import elliprj
 
+    if kc < _HYPERBOLIC:
+        return float(_hyperbolic(quarter_period(kc), 1.0, n))
     return float(n / 3 * elliprj(0.0, kc * kc, 1.0, 1 + n))
+
+
+def _hyperbolic(v: Array | float, sn: Array | float, n: float) -> Array:
+    """`third_kind` to within k′²: n sn²/(1 + n sn²) is n/(1 + n) (1 − cn²/(1 + n sn²))."""
+    root = math.sqrt(n)
+    return (n * np.asarray(v) - root * np.arctan(root * np.asarray(sn))) / (1 + n)

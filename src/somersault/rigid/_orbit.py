@@ -100,6 +100,8 @@ def orbit(inertias: Array, omega: Array) -> Orbit | None:
     reach[c] = float(i[c] * y / (span * squared))
     kc = _root(x * span / (y * bc))
     sn, cn, dn = (min(1.0, abs(float(omega[p] / greatest[p]))) for p in (b, a, c))
+    if kc == cn == 0:
+        return None
     start = math.asinh(sn / cn) if kc == 0 else first_kind(sn, cn, dn)
     sign = 1 if above >= 0 else -1
     excess = [0.0, 0.0, 0.0]
@@ -118,4 +120,6 @@ def orbit(inertias: Array, omega: Array) -> Orbit | None:
 
 
 def _root(value: Fraction) -> float:
-    return math.sqrt(float(value))
+    """Square root, scaled so that the fraction itself may lie beyond what a float can hold."""
+    half = (value.numerator.bit_length() - value.denominator.bit_length()) // 2
+    return math.ldexp(math.sqrt(value / Fraction(4) ** half), half)

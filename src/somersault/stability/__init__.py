@@ -16,7 +16,3 @@ __all__ = [
     "spin",
     "stable_ranges",
 ]
-
-
-def linear(spin, stiffness=None, damping=None, lock=(), rate=None):  # TEMP
-    return spin.linear(stiffness, damping, lock, rate)

@@ -25,6 +25,7 @@ from somersault.stability._spin import (
     evaluated,
     principal,
     require_free,
+    require_inertia,
 )
 
 if TYPE_CHECKING:
@@ -82,6 +83,7 @@ def _system(
     names = tuple(kinds["body"])
     values = _stacked([np.asarray(v, float) for v in kinds["body"].values()])
     about = principal(composite_inertia(model, q, names, values))
+    require_inertia(model, about.inertias)
     index = _one_axis(model, about, axis)
     turned = evaluated(model, q, about.axes[..., index], names, values)
     chosen = coordinates(model, index + 1, locked_speeds(model, lock))
@@ -177,8 +179,14 @@ def _lowest_energy(
     subsystem: str | None,
 ) -> Array:
     whole = _system(model, axis, quantities, lock)
+    rigid = len(whole.names) == len(whole.attitude.places())
+
+    def least(potential: Array) -> Array:  # of a rigid body, a maximum is as good
+        low = _gyric.lowest(potential)
+        return np.maximum(low, _gyric.lowest(-potential)) if rigid else low
+
     lows = [
-        _gyric.lowest(_gyric.amended(p.mass, p.rate, p.stiffness, p.attitude))
+        least(_gyric.amended(p.mass, p.rate, p.stiffness, p.attitude))
         for p in whole.parts(subsystem)
         if len(p.names) > (p.attitude.about is not None)
     ]
@@ -216,6 +224,8 @@ def chart(
         raise SomersaultError("a chart needs one row of values for each of x and y")
     if x_name == y_name:
         raise SomersaultError(f"a chart of {x_name} against itself shows nothing; vary two things")
+    if {x_name, y_name} & set(fixed or {}):
+        raise SomersaultError(f"{x_name} or {y_name} is varied and fixed at once; do one of them")
     quantities = {**(fixed or {}), x_name: x_values[None, :], y_name: y_values[:, None]}
     rates = growth_rates(model, quantities, axis=axis, lock=lock, subsystem=subsystem)
     dims = (y_name, x_name)
@@ -262,7 +272,9 @@ def root_locus(
     lock: Iterable[str] = (),
     subsystem: str | None = None,
 ) -> xr.Dataset:
-    """Roots while one quantity is varied: `real` and `imaginary` (value, root), in units of Ω.
+    """Roots while one quantity is varied: `growth` and `frequency`, their real and
+    imaginary parts (value, root), in units of Ω.
+
 
     From the whole second-order system, nothing eliminated: the stroboscopic roots and the
     zeros of the drift are among them.
@@ -285,7 +297,7 @@ def root_locus(
     dims = (name, "root")
     attrs = {"units": "spin rate"}
     return xr.Dataset(
-        {"real": (dims, roots.real, attrs), "imaginary": (dims, roots.imag, attrs)},
+        {"growth": (dims, roots.real, attrs), "frequency": (dims, roots.imag, attrs)},
         coords={name: (name, values, {"units": unit(model, name)})},
         attrs={"model": model.name, "axis": str(axis), "subsystem": subsystem or "all"},
     )
@@ -307,6 +319,10 @@ def stable_ranges(
     missed, then halves each edge's bracket.
     """
     name, low, high = along
+    if not low < high or samples < 2:
+        raise SomersaultError(
+            f"stable ranges of {name} need a lower and a higher value, and two samples or more"
+        )
     values = np.linspace(low, high, samples)
 
     def stable(at: Array) -> Array:

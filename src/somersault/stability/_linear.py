@@ -85,6 +85,8 @@ class LinearSpin:
         "gyroscopic": the energy is a saddle, and only gyroscopic coupling holds it; damping
         destroys it. "unstable": neither does.
         """
+        if not self.potential.size:  # nothing but the drift of the spin's own angle
+            return "definite"
         low, high = self.potential[0], self.potential[-1]
         small = 1e-9 * max(abs(low), abs(high))
         rigid = len(self.coordinates) == len(self.attitude.places())
@@ -208,12 +210,23 @@ def diagonal(spin: Spin, given: Mapping[str, float], what: str, default: Array) 
     """Spring (damper) numbers at each joint speed in kg m², from non-dimensional ones."""
     result = default.copy()
     for name, value in spread(spin.model, given, mirrored=False).items():
-        number = float(np.asarray(value))
-        if not np.isfinite(number):
-            raise SomersaultError(f"{what} of {name} is {number}; give a finite number")
+        number = one_number(f"{what} of {name}", value)
+        if number < 0 and what == "damping":
+            raise SomersaultError(f"damping of {name} is {number:g}; dampers are not negative")
         own = spin.model.speed_slice(name)
         result[own] = [number * spin.outboard_inertias[s] for s in spin.model.speeds[own]]
     return result
+
+
+def one_number(what: str, value: Any) -> float:
+    """A finite number, or SomersaultError naming what should have been one."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = float("nan")
+    if not np.isfinite(number):
+        raise SomersaultError(f"{what} is {value!r}; give a finite number")
+    return number
 
 
 def locked_speeds(model: Model, lock: Iterable[str]) -> set[int]:

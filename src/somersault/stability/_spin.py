@@ -108,8 +108,10 @@ def spin(
     if q.ndim != 1:
         raise SomersaultError("a spin has one pose; use stability.chart for several")
     about = principal(composite_inertia(model, q))
+    require_inertia(model, about.inertias)
     index = axis_index(about, axis)
     turned = evaluated(model, q, about.axes[:, index])
+    _require_independent(model, turned.mass)
     return Spin(
         model,
         index + 1,
@@ -137,6 +139,28 @@ def principal_inertias(model: str | Model, pose: Mapping[str, ArrayLike] | None 
     return principal(composite_inertia(model, posed(model, pose))).inertias
 
 
+def _require_independent(model: Model, mass: Array) -> None:
+    """Refuse joints that do the same, or move nothing in this pose: M would be singular."""
+    size = np.sqrt(np.diag(mass))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        scaled = mass / np.outer(size, size)
+    if not np.all(np.isfinite(scaled)) or np.linalg.eigvalsh(scaled)[0] < 1e-12:
+        raise SomersaultError(
+            f"two joints of {model.name} do the same in this pose, or one moves nothing; lock or "
+            "remove one"
+        )
+
+
+def require_inertia(model: Model, inertias: Array) -> None:
+    """Refuse bodies without inertia about some axis: nothing says how they would turn."""
+    least, most = np.min(inertias, -1), np.max(inertias, -1)
+    if not np.all(least > 1e-12 * most):
+        raise SomersaultError(
+            f"{model.name} has no inertia about one of its axes, so its spins are not determined; "
+            "give its bodies some thickness"
+        )
+
+
 # ----------------------------------------------------------------- many poses and numbers
 
 
@@ -151,18 +175,17 @@ class Principal:
 def principal(inertia: Array) -> Principal:
     """Principal axes, each matched to the body axis it lies nearest and pointing its way.
 
-    Where two inertias are equal their axes are not determined; a relative nudge of 1e-11
-    picks those along the body's own.
+    Where two inertias are equal their axes are not determined; a nudge picks those along the
+    body's own, and is then taken out again wherever the axes are determined.
     """
     nudge = (
         np.diag([3.0, 2.0, 1.0]) * 1e-11 * np.trace(inertia, axis1=-2, axis2=-1)[..., None, None]
     )
-    values, vectors = np.linalg.eigh(inertia + nudge)
+    _, vectors = np.linalg.eigh(inertia + nudge)
     orders = np.array(list(permutations(range(3))))
     along = np.abs(vectors)  # [body axis, principal axis]
     match = np.stack([sum(along[..., k, order[k]] for k in range(3)) for order in orders], -1)
     order = orders[np.argmax(match, -1)]
-    values = np.take_along_axis(values, order, -1)
     axes = np.take_along_axis(vectors, order[..., None, :], -1)
     diagonal = np.einsum("...kk->...k", axes)
     axes = axes * np.where(diagonal < 0, -1.0, 1.0)[..., None, :]
@@ -171,7 +194,19 @@ def principal(inertia: Array) -> Principal:
     left_handed = np.linalg.det(axes) < 0
     least = np.argmin(np.abs(np.einsum("...kk->...k", axes)), -1)
     flip = np.where(left_handed[..., None] & (np.arange(3) == least[..., None]), -1.0, 1.0)
-    return Principal(values, axes * flip[..., None, :])
+    return _sharpened(inertia, axes * flip[..., None, :])
+
+
+def _sharpened(inertia: Array, axes: Array) -> Principal:
+    """One step of perturbation theory: the small products of inertia that are left, gone."""
+    left = np.swapaxes(axes, -1, -2) @ inertia @ axes
+    moments = np.einsum("...kk->...k", left)
+    gap = moments[..., None, :] - moments[..., :, None]
+    apart = np.abs(gap) > 1e-8 * moments.sum(-1)[..., None, None]
+    axes = axes @ (np.eye(3) + np.where(apart, left / np.where(apart, gap, 1.0), 0.0))
+    axes = axes @ (1.5 * np.eye(3) - 0.5 * np.swapaxes(axes, -1, -2) @ axes)  # orthonormal again
+    left = np.swapaxes(axes, -1, -2) @ inertia @ axes
+    return Principal(np.einsum("...kk->...k", left), axes)
 
 
 def axis_index(about: Principal, axis: Axis | str | int) -> int:

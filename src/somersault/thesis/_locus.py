@@ -38,7 +38,7 @@ def roots_along(values: Array, **fixed: float) -> Array:
         fixed={f"{kind}.shoulder": value for kind, value in fixed.items()},
         subsystem=THREE,
     )
-    return np.asarray(found["real"].values + 1j * found["imaginary"].values)
+    return np.asarray(found.growth.values + 1j * found.frequency.values)
 
 
 def asymmetry(roots: Array) -> float:
