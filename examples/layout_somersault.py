@@ -1,7 +1,8 @@
 """Which springs stabilise a layout somersault: a chart, a verdict and the reason.
 
 Run with `python examples/layout_somersault.py [MODEL [JOINT]]`: any free model with a joint, or a
-mirrored pair of them, whose angle and spring are to be varied. Writes stability.png.
+mirrored pair of them, whose angle and spring are to be varied. Writes stability.png and
+roots.png.
 """
 
 import sys
@@ -9,7 +10,7 @@ import sys
 import numpy as np
 
 import somersault as so
-from somersault.view import stability_chart
+from somersault.view import root_loci, stability_chart
 
 model = sys.argv[1] if len(sys.argv) > 1 else "furrer"
 joint = sys.argv[2] if len(sys.argv) > 2 else "shoulder"
@@ -20,6 +21,14 @@ chart = so.stability.chart(
     y=(f"stiffness.{joint}", np.linspace(-2.0, 4.0, 601)),
 )
 stability_chart(chart).savefig("stability.png", dpi=160)
+
+locus = so.stability.root_locus(
+    model,
+    (f"stiffness.{joint}", np.linspace(-2.0, 4.0, 241)),
+    fixed={f"pose.{joint}": 1.3},
+    subsystem="tilt",
+)
+root_loci(locus).savefig("roots.png", dpi=160)
 
 for angle in (0.4, 1.4, 2.6):
     ranges = so.stability.stable_ranges(

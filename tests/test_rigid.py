@@ -337,3 +337,33 @@ def test_the_limit_of_no_complementary_modulus() -> None:
     np.testing.assert_allclose(
         third_kind(zero, 0.4, 0.0), third_kind(tiny, 0.4, 1e-150), rtol=1e-13
     )
+
+
+def test_the_motion_stays_on_its_curve_of_the_map() -> None:
+    made = RigidMotion((1.0, 0.9, 0.5), (0.2, 0.9, -0.6))
+    h = float(np.linalg.norm(made.momentum))
+    curves = rigid.energy_curve(made.inertias, made.energy, 20001, h).reshape(-1, 3)
+    cosines = made.inertias * made.omega(np.linspace(0, made.period, 30)) / h
+    nearest = np.linalg.norm(curves[None] - cosines[:, None], axis=-1).min(-1)
+    assert nearest.max() < 1e-3
+
+
+def test_a_motion_does_not_change_with_what_it_was_made_from() -> None:
+    inertias, w0 = np.array([1.0, 0.9, 0.5]), np.array([0.1, 1.0, 0.2])
+    made = RigidMotion(inertias, w0)
+    before = made.omega(2.0)
+    w0[:] = 9
+    inertias[:] = 9
+    np.testing.assert_array_equal(made.omega(2.0), before)
+    with pytest.raises(ValueError, match="read-only"):
+        made.omega0[0] = 3
+
+
+def test_the_twist_of_a_spin_about_axis_3_as_the_major_axis_is_a_limit_too() -> None:
+    for way in (1.0, -1.0):
+        near = RigidMotion((0.5, 0.9, 1.0), (1e-7, 0, way))
+        steady = RigidMotion((0.5, 0.9, 1.0), (0, 0, way))
+        assert steady.twists_per_somersault == pytest.approx(near.twists_per_somersault, rel=1e-10)
+        assert near.twists_per_somersault == pytest.approx(
+            near.twists_per_somersault_quadrature(), rel=1e-6
+        )

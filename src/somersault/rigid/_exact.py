@@ -116,7 +116,7 @@ class RigidMotion:
         if self.omega0[0] or self.omega0[1] or product <= 0:
             return rate, 0.0
         circling = math.copysign(math.sqrt(product / (one * two)), one - three) * rate
-        return rate - circling, math.copysign(circling, circling )
+        return rate - circling, math.copysign(circling, circling * self.omega0[2])
 
     @property
     def twists_per_somersault(self) -> float:

@@ -146,8 +146,7 @@ def _require_independent(model: Model, mass: Array) -> None:
         scaled = mass / np.outer(size, size)
     if not np.all(np.isfinite(scaled)) or np.linalg.eigvalsh(scaled)[0] < 1e-12:
         raise SomersaultError(
-            f"two joints of {model.name} do the same in this pose, or one moves nothing; lock or "
-            "remove one"
+            f"two joints of {model.name} do the same in this pose, or one moves nothing; remove one"
         )
 
 

@@ -1,0 +1,64 @@
+"""Pictures of what `somersault.stability` returns, for any model."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from somersault.view._charts import filled, locus, stroboscopic
+from somersault.view._style import BLUE, GREEN, figure, label, style
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+
+def stability_chart(chart: xr.Dataset) -> Figure:
+    """The stable region of a `stability.chart`; where the energy is definite, if it was asked."""
+    y_name, x_name = (str(name) for name in chart.stable.dims)
+    x, y = chart[x_name].values, chart[y_name].values
+    with style():
+        picture = figure()
+        axes = picture.subplots()
+        axes.set(xlabel=_axis(chart, x_name), ylabel=_axis(chart, y_name))
+        axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
+        whole = "" if chart.attrs["subsystem"] == "all" else f", part of {chart.attrs['subsystem']}"
+        axes.set_title(f"{chart.attrs['model']} about axis {chart.attrs['axis']}{whole}")
+        _region(axes, x, y, chart.stable.values, BLUE, "stable")
+        if "definite" in chart:
+            _region(axes, x, y, chart.definite.values, GREEN, "definite: survives damping")
+        picture.draw_without_rendering()
+    return picture
+
+
+def _region(axes: Any, x: Any, y: Any, inside: Any, color: str, name: str) -> None:
+    if inside.all():
+        axes.set_facecolor("#dfe9f3")
+    elif inside.any():
+        filled(axes, x, y, inside, color=color, edge=color, alpha=0.35)
+    column = int(np.argmax(inside.sum(0))) if inside.any() else len(x) // 2
+    rows = np.flatnonzero(inside[:, column])
+    row = rows[len(rows) // 2] if rows.size else len(y) // 2
+    text = name if rows.size else f"nowhere {name}"
+    label(axes, x[column], y[row], text, color, ha="center")
+
+
+def root_loci(found: xr.Dataset) -> Figure:
+    """The roots of a `stability.root_locus`, darker as the quantity rises."""
+    (name,) = (str(n) for n in found.coords)
+    values = found[name].values
+    roots = found.growth.values + 1j * found.frequency.values
+    with style():
+        picture = figure(6.2, 5.4)
+        axes = picture.subplots()
+        dots = locus(axes, values, roots)
+        stroboscopic(axes)
+        picture.colorbar(dots, label=_axis(found, name), shrink=0.7)
+        axes.set_title(f"{found.attrs['model']} about axis {found.attrs['axis']}")
+        picture.draw_without_rendering()
+    return picture
+
+
+def _axis(data: xr.Dataset, name: str) -> str:
+    return f"{name.replace('.', ' ').replace('_', ' ')} ({data[name].attrs['units']})"
