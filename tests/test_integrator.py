@@ -171,12 +171,8 @@ def test_one_step_is_of_order_nine() -> None:
 def jacobi(times: np.ndarray) -> np.ndarray:
     """sn, cn, dn of modulus k² = 0.51, which solve B5, (time, 3), to 30 digits."""
     with mpmath.workdps(30):
-        return np.array(
-            [
-                [float(mpmath.ellipfun(f, mpmath.mpf(float(t)), m="0.51")) for f in ("sn", "cn", "dn")]
-                for t in times
-            ]
-        )  # fmt: skip
+        rows = [[mpmath.ellipfun(f, float(t), m="0.51") for f in ("sn", "cn", "dn")] for t in times]
+        return np.array(rows, float)
 
 
 def test_detest_b5() -> None:
