@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
-from trees import random_tree, unit
+from trees import unit
 
 import somersault as so
 from somersault.attitude import (
@@ -92,39 +92,20 @@ def test_angular_momentum_and_energy(name: str) -> None:
     np.testing.assert_allclose(norms, 1.0, rtol=0, atol=1e-14)
 
 
-def test_energies_are_those_of_the_motion() -> None:
-    """Kinetic energy against ½ ω·A ω of the pose locked; springs against ½ k (q - rest)²."""
+def test_energy_of_springs() -> None:
+    """½ k (q - rest)²; the kinetic energy is the dynamics' own, and tested there."""
     flight = tumbling()
     data = flight.dataset
     q = data["joint_angle"].values
     stretch = q - [0.7, -1.0]
     np.testing.assert_allclose(data["spring_energy"], (stretch**2) @ [10.0, 6.0], rtol=1e-13)
-    locked = fly("furrer", Takeoff(tilt=0.3, angular_velocity=[1.0, 5.0, 2.0]), 1.0)
-    omega = locked.dataset["angular_velocity"].values
-    inertia = locked.system.equations.inertia(locked.start.q)
-    wanted = 0.5 * np.einsum("ti,ij,tj->t", omega, inertia, omega)
-    np.testing.assert_allclose(locked.kinetic_energy, wanted, rtol=1e-13)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("number", range(5))
-def test_random_trees_keep_momentum_and_energy(number: int) -> None:
-    rng = np.random.default_rng([31, number])
-    model = random_tree(rng, 3, True)
-    free = {j.name: JointTakeoff("sprung", stiffness=4.0, damping=0.0) for j in model.joints}
-    begun = Takeoff(quaternion=unit(rng, 4), angular_momentum=rng.normal(size=3), joints=free)
-    flight = fly(model, begun, 1.0)
-    np.testing.assert_allclose(flight.start.momentum, begun.angular_momentum, rtol=0, atol=1e-13)
-    assert flight.momentum_drift < 1e-11
-    assert flight.energy_drift < 1e-11
 
 
 def test_dampers_take_energy_away() -> None:
     flight = tumbling(damping=1.0)
     energy = flight.kinetic_energy + flight.spring_energy
     assert np.all(np.diff(energy) <= 1e-12 * energy[0])
-    rates = flight.dataset["joint_rate"].values
-    power = (rates**2).sum(1)  # N m/(rad/s) is 1 in both
+    power = (flight.dataset["joint_rate"].values ** 2).sum(1)  # both dampers are 1 N m s/rad
     lost = np.trapezoid(power, flight.times)
     assert energy[0] - energy[-1] == pytest.approx(lost, rel=1e-3)
 
@@ -147,12 +128,6 @@ def test_held_spins_are_steady(number: int) -> None:
     np.testing.assert_allclose(data["angular_velocity"] - wanted, 0, atol=1e-6)
     np.testing.assert_allclose(data["joint_angle"] - list(pose.values()), 0, atol=1e-7)
     np.testing.assert_allclose(data["joint_rate"], 0, atol=1e-6)
-
-
-def test_without_hold_it_is_not_steady() -> None:
-    joints = arms(1.2, 1.4, hold=False, rest=None)
-    flight = fly("furrer", Takeoff(spin=SPIN, joints=joints), TURN)
-    assert np.ptp(flight.dataset["joint_angle"].values) > 0.1
 
 
 @cache
@@ -215,7 +190,6 @@ def test_deviation_grows_until_it_is_large() -> None:
     size = np.hypot(data["tilt"], data["twist"]).values
     factors = size[400:] / size[300:-100]
     np.testing.assert_allclose(factors, np.exp(np.pi * fastest.real / fastest.imag), rtol=0.02)
-    assert fastest.real == pytest.approx(tilting.growth_rate, abs=1e-12)
 
 
 def test_deviation_stays_small_in_a_stable_layout() -> None:
@@ -249,10 +223,7 @@ def test_rigid_flights_are_solutions_of_eulers_equations(name: str) -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_symmetric_body_whose_axis_moves(seed: int) -> None:
-    """R(t) = exp(h t/I) R₀ exp(e₃ (1 - J/I) ω₃ t): Drake's free body, its spin about any axis.
-
-    A test in which only the constant axis turned once hid wrong dynamics.
-    """
+    """R(t) = exp(h t/I) R₀ exp(e₃ (1 - J/I) ω₃ t): Drake's free body, its spin about any axis."""
     rng = np.random.default_rng(seed)
     across, along = 0.04, 0.02
     inertia = ((across, 0.0, 0.0), (0.0, across, 0.0), (0.0, 0.0, along))
@@ -325,8 +296,6 @@ def test_velocity_and_gravity_move_only_the_centre_of_mass() -> None:
         moving.dataset["centre_of_mass"], v * t + g * t**2 / 2, rtol=1e-14, atol=1e-15
     )
     assert not np.any(still.dataset["centre_of_mass"])
-    for name in ("angular_momentum", "kinetic_energy"):
-        assert np.array_equal(still.dataset[name], moving.dataset[name])
 
 
 def test_left_and_right() -> None:
@@ -361,16 +330,18 @@ def test_somersaults_are_counted_through_turns(samples: int, spin: float) -> Non
     np.testing.assert_allclose(flight.dataset["somersault"], spin * flight.times, rtol=0, atol=1e-8)
 
 
-@pytest.mark.parametrize("samples", [2, 20, 3000])
-def test_turns_are_counted_though_the_body_speeds_up(samples: int) -> None:
-    """Arms drawn in make a twist several times faster than it was at takeoff."""
+@pytest.mark.parametrize("samples", [2, 300, 3000])
+def test_turns_are_counted_near_the_singularity(samples: int) -> None:
+    """Arms drawn in hasten the twist, and tilt goes by a right angle at a distance of 1.5°:
+    well defined, so that it must be counted the same however few samples are kept."""
     joints = {
-        "left_shoulder": JointTakeoff("prescribed", times=[0, 0.3], angles=[1.5, 0]),
-        "right_shoulder": JointTakeoff("prescribed", times=[0, 0.3], angles=[-1.5, 0]),
+        name: JointTakeoff("prescribed", times=[0, 0.3], angles=[side * 1.56, 0])
+        for name, side in SHOULDERS.items()
     }
-    begun = Takeoff(tilt=0.3, angular_velocity=[0.3, 4.0, 20.0], joints=joints)
+    begun = Takeoff(tilt=1.13, angular_velocity=[-0.76, 7.05, 6.67], joints=joints)
+    fine = fly("furrer", begun, 3.0, samples=30_000)
+    assert 0.005 < np.abs(np.cos(fine.dataset["tilt"].values)).min() < 0.1
     flight = fly("furrer", begun, 3.0, samples=samples)
-    fine = fly("furrer", begun, 3.0, samples=20_000)
     assert flight.landing.twist == pytest.approx(fine.landing.twist, abs=1e-6)
     assert flight.landing.somersault == pytest.approx(fine.landing.somersault, abs=1e-6)
 
@@ -396,16 +367,9 @@ def test_quarter_twist(case: tuple) -> None:
         turned = matrix_from_quaternion(end.quaternion).T @ flight.start.momentum
         assert abs(turned[1]) < 1e-11 * np.linalg.norm(h)
         assert abs(np.cos(end.twist)) < 1e-10
-        before = flight.dataset["twist"].values[:-1]
-        assert np.all(np.abs(before) < np.pi / 2)
+        assert np.all(np.abs(flight.dataset["twist"].values[:-1]) < np.pi / 2)
     ends = [[f.landing.time, f.landing.somersault, f.landing.tilt, f.landing.twist] for f in found]
     np.testing.assert_allclose(ends, ends[:1] * 3, rtol=0, atol=1e-7)
-
-
-def test_no_quarter_twist_in_a_stable_layout() -> None:
-    flight = layout(*STABLE, 8, until="quarter twist")
-    assert flight.landing.ended == "duration"
-    assert flight.landing.somersault == pytest.approx(16 * np.pi, abs=0.3)
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from somersault import stability
     from somersault._errors import SomersaultError, SomersaultWarning
     from somersault.dynamics import Equations
-    from somersault.flight import Flight, JointTakeoff, Landing, Takeoff, fly
+    from somersault.flight import Flight, JointTakeoff, Landing, Takeoff, deviated_flight, fly
     from somersault.model import Body, Joint, Model, load, shipped
     from somersault.stability import LinearSpin, Mode, Spin, spin
 
@@ -37,6 +37,7 @@ _HOME = {
     "JointTakeoff": "somersault.flight",
     "Landing": "somersault.flight",
     "Takeoff": "somersault.flight",
+    "deviated_flight": "somersault.flight",
     "fly": "somersault.flight",
     "LinearSpin": "somersault.stability",
     "Mode": "somersault.stability",
@@ -58,6 +59,7 @@ __all__ = [
     "SomersaultWarning",
     "Spin",
     "Takeoff",
+    "deviated_flight",
     "fly",
     "load",
     "shipped",

@@ -1,5 +1,6 @@
 """Takeoff, flight, landing."""
 
+from somersault.flight._deviation import deviated_flight
 from somersault.flight._flight import Flight, Landing
 from somersault.flight._fly import fly
 from somersault.flight._spec import FlightSpec, parse_spec, read_spec
@@ -11,6 +12,7 @@ __all__ = [
     "JointTakeoff",
     "Landing",
     "Takeoff",
+    "deviated_flight",
     "fly",
     "parse_spec",
     "read_spec",

@@ -16,6 +16,7 @@ from somersault.flight._system import System
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -177,6 +178,12 @@ class Flight:
 
     def _attributes(self) -> dict[str, Any]:
         return {"model": self.system.model.name, "ended": self.ended, "steps": self.steps}
+
+    def plot(self) -> Figure:
+        """The history as a matplotlib picture (`.savefig(file)` writes it)."""
+        from somersault.flight._plot import plot
+
+        return plot(self)
 
     def save(self, path: str | Path) -> None:
         """Write the history as NetCDF (.nc) or CSV (.csv), whole or not at all."""

@@ -1,0 +1,114 @@
+"""From a steady spin and a small deviation to a flight, in one call."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from somersault._array import Array
+from somersault.attitude import quaternion_from_matrix, quaternion_product
+from somersault.flight._flight import Flight
+from somersault.flight._fly import fly
+from somersault.flight._takeoff import JointTakeoff, Takeoff
+from somersault.model import Joint
+from somersault.model._pose import pose, spread
+from somersault.stability import Spin
+
+
+def deviated_flight(
+    spin: Spin,
+    rate: float,
+    duration: float,
+    *,
+    tilt: float = 0.0,
+    somersault: float = 0.0,
+    twist: float = 0.0,
+    joints: Mapping[str, float] | None = None,
+    stiffness: Mapping[str, float] | None = None,
+    damping: Mapping[str, float] | None = None,
+    lock: Iterable[str] = (),
+    **options: Any,
+) -> Flight:
+    """The flight of a body that spins at `rate` (rad/s), but for a small deviation.
+
+    `tilt`, `somersault` and `twist` are small turns (rad) about the principal axes nearest
+    body axes 1, 2 and 3, and `joints` what joints are moved by (rad, m): the coordinates of
+    `Spin.linear`, whose `stiffness`, `damping` (both without dimension) and `lock` mean the
+    same here. The angular momentum is that of the spin, along inertial axis 2, and springs
+    are pretensioned to hold it; joints with neither spring nor damper are free. `options` are
+    those of `fly`.
+    """
+    model = spin.model
+    springs = spread(model, stiffness or {}, mirrored=False)
+    dampers = spread(model, damping or {}, mirrored=False)
+    locked = set(model.speeds) if "all" in set(lock) else set(
+        spread(model, dict.fromkeys(lock, 0.0), mirrored=False)
+    )  # fmt: skip
+    for name in {*springs, *dampers, *locked}:
+        model.joint(name)
+    moved = pose(model, {**_angles(spin), **_sums(spin, joints or {})})
+    setups = {
+        joint.name: _setup(spin, joint, rate, moved, springs, dampers, locked)
+        for joint in model.joints
+    }
+    momentum = rate * float(spin.principal_inertias[spin.axis - 1])
+    takeoff = Takeoff(
+        quaternion=_attitude(spin, np.array([tilt, somersault, twist])).tolist(),
+        angular_momentum=(0.0, momentum, 0.0),
+        joints=setups,
+    )
+    return fly(model, takeoff, duration, **options)
+
+
+def _angles(spin: Spin) -> dict[str, float]:
+    model = spin.model
+    return {
+        j.name: float(spin.pose[model.coordinate_slice(j.name)][0])
+        for j in model.joints
+        if j.kind != "ball"
+    }
+
+
+def _sums(spin: Spin, moved: Mapping[str, float]) -> dict[str, float]:
+    at = _angles(spin)
+    by_speed = spread(spin.model, moved, mirrored=True)
+    return {name: at.get(name, 0.0) + float(np.asarray(by)) for name, by in by_speed.items()}
+
+
+def _setup(
+    spin: Spin,
+    joint: Joint,
+    rate: float,
+    moved: Array,
+    springs: Mapping[str, Any],
+    dampers: Mapping[str, Any],
+    locked: set[str],
+) -> JointTakeoff:
+    """One joint, its non-dimensional spring and damper at this rate, pretensioned."""
+    speed = joint.name if joint.kind != "ball" else f"{joint.name}.1"
+    inertia = spin.outboard_inertias[speed]
+    k = float(springs.get(joint.name, 0.0)) * rate**2 * inertia
+    b = float(dampers.get(joint.name, 0.0)) * abs(rate) * inertia
+    if joint.kind == "ball":
+        return JointTakeoff("locked" if joint.name in locked else "sprung", stiffness=k, damping=b)
+    angle = float(moved[spin.model.coordinate_slice(joint.name)][0])
+    if joint.name in locked:
+        return JointTakeoff("locked", angle=angle)
+    # Pretension is for the spin's own pose, wherever the deviation has moved the joint.
+    held = spin.holding_torques[speed] * rate**2
+    at = float(spin.pose[spin.model.coordinate_slice(joint.name)][0])
+    if k == 0.0:
+        return JointTakeoff("free", angle=angle, damping=b)
+    return JointTakeoff("sprung", angle=angle, stiffness=k, damping=b, rest=at + held / k)
+
+
+def _attitude(spin: Spin, turn: Array) -> Array:
+    """Quaternion of the spin with its axis along inertial 2, turned about principal axes."""
+    to_two = np.roll(np.eye(3), 2 - spin.axis, axis=0)  # takes the axis of spin to 2
+    steady = to_two @ spin.principal_axes.T
+    vector = spin.principal_axes @ turn
+    half = np.linalg.norm(vector) / 2
+    small = np.concatenate([[np.cos(half)], np.sinc(half / np.pi) / 2 * vector])
+    return quaternion_product(quaternion_from_matrix(steady), small)
