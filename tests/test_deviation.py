@@ -45,7 +45,8 @@ def flown(spin: so.Spin, flight: so.Flight) -> np.ndarray:
     return spin.principal_axes.T @ (steady.inv() * turned(end.quaternion)).as_rotvec()
 
 
-def DEVIATION(spin: so.Spin) -> np.ndarray:  # noqa: N802
+def deviation(spin: so.Spin) -> np.ndarray:
+    """The turn that every test here starts with."""
     turn = spin.principal_axes @ (SMALL * np.array([2.0, 0.0, 1.0]))
     return Rotation.from_rotvec(turn).as_quat(scalar_first=True)
 
