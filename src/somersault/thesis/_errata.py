@@ -17,6 +17,12 @@ class Erratum:
 
 ERRATA = (
     Erratum(
+        "eq. 2.3",
+        "SΨ SΘ CΘ, CΨ SΘ CΘ, SΨ CΘ, CΨ CΘ in the first and third rows (as scanned)",
+        "SΨ SΘ/CΘ, CΨ SΘ/CΘ, SΨ/CΘ, CΨ/CΘ",
+        "Fraction bars are lost: only so does it invert eq. 2.4.",
+    ),
+    Erratum(
         "§2.3.2",
         "the remaining two roots are s = ±ν",
         "s = ±jν, with ν = √(k1 k3) Φ̇",
