@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from somersault import SomersaultError
+from somersault.attitude import matrix_from_quaternion
 from somersault.flight import Flight, JointTakeoff, Takeoff, fly
 from somersault.flight._moves import path
 from somersault.model import GROUND, Body, Joint, Model, load
@@ -55,7 +56,7 @@ def test_vectors(name: str, size: int) -> None:
     good = [0.5] * size
     wrong = [good[1:], [*good, 0.5], [good], 0.5, [], [*good[1:], NAN], [*good[1:], INF], "up"]
     for value in wrong:
-        refused(name, str(size), **{name: value})
+        refused(name, **{name: value})
 
 
 @pytest.mark.parametrize(
@@ -172,8 +173,6 @@ def test_hold_without_a_spring_or_a_spin() -> None:
     for given in (
         {"motion": "locked"},
         {"motion": "free"},
-        {"motion": "sprung", "stiffness": 0.0},
-        {"motion": "sprung"},
         {},
         {"motion": "sprung", "stiffness": 10.0, "rest": 0.1},
     ):
@@ -294,7 +293,8 @@ def test_ways_to_say_the_same() -> None:
     """Angles or a quaternion of any length; spin, its momentum, or its angular velocity."""
     spin = fly("furrer", Takeoff(tilt=0.1, spin=3.0), 0.3)
     h = spin.start.momentum
-    np.testing.assert_allclose(h[[0, 2]], 0, atol=1e-12)
+    turning = matrix_from_quaternion(spin.start.quaternion) @ spin.start.omega
+    np.testing.assert_allclose(turning, [0, 3, 0], atol=1e-12)
     others = [
         Takeoff(tilt=0.1, angular_momentum=h),
         Takeoff(quaternion=3.7 * spin.start.quaternion, angular_velocity=spin.start.omega),

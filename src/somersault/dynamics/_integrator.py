@@ -153,17 +153,20 @@ class Integrator:
 
         low, high = np.zeros(count), steps.copy()
         g_low, g_high = after(low)[0], after(high)[0]
-        middle = high
+        middle, found = high.copy(), np.zeros(count, bool)
         for _ in range(60):
             with np.errstate(invalid="ignore", divide="ignore"):
-                middle = high - g_high * (high - low) / (g_high - g_low)
-            middle = np.where(np.isfinite(middle), middle, (low + high) / 2)
+                trial = high - g_high * (high - low) / (g_high - g_low)
+            trial = np.where(np.isfinite(trial), trial, (low + high) / 2)
+            # A lane that has converged stays, so that it owes nothing to its neighbours.
+            middle = np.where(found, middle, trial)
             g, _ = after(middle)
             same = g * g_high > 0
             g_low = np.where(same, g_low / 2, g_high)
             low = np.where(same, low, high)
             high, g_high = middle, g
-            if np.all((np.abs(high - low) <= 1e-15 * (1 + times)) | (g == 0)):
+            found = found | (np.abs(high - low) <= 1e-15 * (1 + times)) | (g == 0)
+            if found.all():
                 break
         return after(middle)[1], times + middle
 

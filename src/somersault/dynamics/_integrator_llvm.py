@@ -177,7 +177,8 @@ def _arrive(state: int, inputs: int, event: bool) -> str:
     root = t.call("sqrt", squared)
     eighth = t.call("sqrt", t.call("sqrt", t.call("sqrt", root)))
     factor = t.two("fdiv", number(_SAFETY), t.most(eighth, number(_SAFETY / _GROW)))
-    factor = t.where(t.test("oge", factor, number(_SHRINK)), factor, number(_SHRINK))
+    sound = t.both(t.test("ord", squared, squared), t.test("oge", factor, number(_SHRINK)))
+    factor = t.where(sound, factor, number(_SHRINK))
     held_back = t.load("%c", RATE)  # 1 after a step that failed: do not grow at once
     factor = t.where(t.test("ogt", held_back, number(0.0)), t.least(factor, number(1.0)), factor)
     wanted = t.two("fmul", taken, factor)

@@ -56,7 +56,8 @@ class Flight:
     @cached_property
     def _angles(self) -> Array:
         """Somersault, tilt, twist at every point, unwrapped, (points, 3)."""
-        return unwrapped_angles(self._states[:, :4])
+        path = unwrapped_angles(self._states[:, :4])
+        return path if self.start.angles is None else _from(path, self.start.angles)
 
     @cached_property
     def times(self) -> Array:
@@ -96,13 +97,14 @@ class Flight:
 
     @cached_property
     def spring_energy(self) -> Array:
-        """Held by the joints' springs, (time,), J."""
+        """Held by the joints' springs and pretensions, (time,), J."""
         q, _ = self._joints
         total = np.zeros(len(q))
         for plan in self.start.plans:
             if plan.motion == "sprung":
                 own = q[:, self.system.model.coordinate_slice(plan.joint.name)]
-                total += 0.5 * plan.stiffness * _stretch(own, plan.rest) ** 2
+                stretch = _stretch(own, plan.rest)
+                total += 0.5 * plan.stiffness * stretch**2 - plan.pretension * stretch
         return total
 
     @property
@@ -129,11 +131,12 @@ class Flight:
     def landing(self) -> Landing:
         """How it ended."""
         somersault, tilt, twist = self._angles[-1].tolist()
-        names = self.system.model.coordinates
+        state, time = self._states[-1], self._moments[-1]
+        q, _ = self.system.joint_states(state, time, self._parameters)
         return Landing(
-            float(self.times[-1]), somersault, tilt, twist,
-            self.states[-1, :4], self.states[-1, 4:7],
-            dict(zip(names, self._joints[0][-1].tolist(), strict=True)), self.ended,
+            float(time), somersault, tilt, twist,
+            state[:4] / np.linalg.norm(state[:4]), state[4:7],
+            dict(zip(self.system.model.coordinates, q.tolist(), strict=True)), self.ended,
         )  # fmt: skip
 
     @cached_property
@@ -190,6 +193,18 @@ class Flight:
         from somersault.flight._save import save
 
         save(self, Path(path))
+
+
+def _from(path: Array, given: Array) -> Array:
+    """The path in the representation, and with the whole turns, that it takes off with."""
+    other = path + np.pi
+    other[:, 1] = np.pi - path[:, 1]
+    best = path
+    for choice in (path, other):
+        turned = choice + 2 * np.pi * np.round((given - choice[0]) / (2 * np.pi))
+        if choice is path or np.abs(turned[0] - given).sum() < np.abs(best[0] - given).sum():
+            best = turned
+    return best
 
 
 def _stretch(q: Array, rest: float) -> Array:

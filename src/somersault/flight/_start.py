@@ -11,7 +11,8 @@ from somersault._errors import SomersaultError
 from somersault.attitude import matrix_from_quaternion, quaternion_from_angles
 from somersault.flight._system import System
 from somersault.flight._takeoff import JointPlan, Takeoff
-from somersault.stability import Spin
+from somersault.model import Model
+from somersault.stability import spin
 
 
 @dataclass(frozen=True)
@@ -19,6 +20,7 @@ class Start:
     """A takeoff in numbers: attitude, angular velocity (body axes), joints, springs.
 
     `momentum` is the angular momentum in inertial axes, (3,); all that stays the same.
+    `angles` are the somersault, tilt and twist asked for, None where a quaternion was.
     """
 
     quaternion: Array
@@ -27,29 +29,36 @@ class Start:
     u: Array
     momentum: Array
     plans: tuple[JointPlan, ...]
+    angles: Array | None
 
 
-def start(system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...], nominal: Spin) -> Start:
-    """Resolve attitude, spin and pretension; `nominal` is the steady spin of the takeoff pose."""
+def start(system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...]) -> Start:
+    """Resolve attitude, spin and pretension."""
     quaternion = _quaternion(takeoff)
     to_inertial = matrix_from_quaternion(quaternion)
     q = np.array([x for plan in plans for x in plan.position])
     u = np.array([x for plan in plans for x in _rates(plan)])
-    inertia = system.equations.inertia(q)
     if takeoff.angular_velocity is not None:
         omega = np.asarray(takeoff.angular_velocity, float)
-    else:
-        wanted = _momentum(takeoff, nominal)
+    elif takeoff.angular_momentum is not None:
         of_joints = system.equations.momentum(q, _speeds(np.zeros(3), u))[:3]
-        omega = np.linalg.solve(inertia, to_inertial.T @ wanted - of_joints)
+        wanted = to_inertial.T @ np.asarray(takeoff.angular_momentum, float)
+        omega = np.linalg.solve(system.equations.inertia(q), wanted - of_joints)
+    else:
+        omega = to_inertial[1] * (takeoff.spin or 0.0)
     h = to_inertial @ system.equations.momentum(q, _speeds(omega, u))[:3]
-    rate = _nominal_rate(takeoff, nominal, h)
-    return Start(quaternion, omega, q, u, h, tuple(_pretensioned(p, nominal, rate) for p in plans))
+    if any(plan.hold for plan in plans):
+        plans = _pretensioned(system.model, takeoff, plans, h)
+    angles = None
+    if takeoff.quaternion is None:
+        angles = np.array([takeoff.somersault, takeoff.tilt, takeoff.twist], float)
+    return Start(quaternion, omega, q, u, h, plans, angles)
 
 
 def _quaternion(takeoff: Takeoff) -> Array:
     if takeoff.quaternion is not None:
         given = np.asarray(takeoff.quaternion, float)
+        given = given / np.abs(given).max()
         return given / np.linalg.norm(given)
     return quaternion_from_angles(takeoff.somersault, takeoff.tilt, takeoff.twist)
 
@@ -62,26 +71,21 @@ def _speeds(omega: Array, u: Array) -> Array:
     return np.concatenate([omega, np.zeros(3), u])
 
 
-def _momentum(takeoff: Takeoff, nominal: Spin) -> Array:
-    if takeoff.angular_momentum is not None:
-        return np.asarray(takeoff.angular_momentum, float)
-    along = np.array([0.0, 1.0, 0.0])
-    return (takeoff.spin or 0.0) * nominal.principal_inertias[1] * along
+def _pretensioned(
+    model: Model, takeoff: Takeoff, plans: tuple[JointPlan, ...], momentum: Array
+) -> tuple[JointPlan, ...]:
+    """Plans whose held joints have the torque that balances the nominal spin.
 
-
-def _nominal_rate(takeoff: Takeoff, nominal: Spin, momentum: Array) -> float:
-    """Rate of the steady spin that springs are pretensioned for."""
-    if takeoff.spin is not None:
-        return takeoff.spin
-    return float(np.linalg.norm(momentum) / nominal.principal_inertias[1])
-
-
-def _pretensioned(plan: JointPlan, nominal: Spin, rate: float) -> JointPlan:
-    if not plan.hold:
-        return plan
+    That is the steady spin of the takeoff pose about its principal axis nearest 2, at the rate
+    asked for, or else at the one that has this angular momentum.
+    """
+    angles = {p.joint.name: p.position[0] for p in plans if p.joint.kind != "ball"}
+    nominal = spin(model, 2, angles)
+    rate = takeoff.spin or float(np.linalg.norm(momentum)) / nominal.principal_inertias[1]
     if rate == 0:
-        raise SomersaultError(
-            f"joint {plan.joint.name}: hold balances a spin, and this takeoff has none"
-        )
-    torque = nominal.holding_torques[plan.joint.name] * rate**2
-    return replace(plan, rest=plan.position[0] + torque / plan.stiffness)
+        held = next(plan.joint.name for plan in plans if plan.hold)
+        raise SomersaultError(f"joint {held}: hold balances a spin, and this takeoff has none")
+    return tuple(
+        replace(p, pretension=nominal.holding_torques[p.joint.name] * rate**2) if p.hold else p
+        for p in plans
+    )

@@ -20,13 +20,13 @@ from somersault._errors import SomersaultError
 from somersault.dynamics import Equations
 from somersault.dynamics._articulated import forward_dynamics
 from somersault.dynamics._integrator import Integrator
-from somersault.dynamics._newton_euler import momentum
 from somersault.dynamics._springs import torques as spring_torques
 from somersault.flight._moves import path
 from somersault.flight._takeoff import JointPlan, Motion
 from somersault.model import Joint, Model
 
 _BASE = 7  # quaternion and ω
+_NUMBERS = ("stiffness", "rest", "damping", "pretension")  # parameters of a joint that moves
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class System:
             elif plan.motion == "locked":
                 values += plan.position
             else:
-                values += [plan.stiffness, plan.rest, plan.damping]
+                values += [plan.stiffness, plan.rest, plan.damping, plan.pretension]
         return np.array(values)
 
     @cached_property
@@ -124,7 +124,7 @@ class System:
                 at = [self._y[q + k] for k in range(joint.coordinates)]
                 moving = [self._y[u + k] for k in range(joint.speeds)]
                 q, u = q + joint.coordinates, u + joint.speeds
-                numbers = dict(zip(("stiffness", "rest", "damping"), own, strict=True))
+                numbers = dict(zip(_NUMBERS, own, strict=True))
                 if kind.motion == "free":
                     numbers["stiffness"] = 0.0
                 found.append(_Joint(joint, at, moving, None, numbers))
@@ -145,7 +145,7 @@ class System:
             q,
             omega,
             u,
-            spring_torques(self.model, q, u, symbols),
+            _with_pretension(spring_torques(self.model, q, u, symbols), joints),
             [0.0, 0.0, 0.0],
             driven,
         )
@@ -157,12 +157,9 @@ class System:
         )
 
     def _gauge(self) -> Any:
-        """Angular momentum along body axis 2: its sign changes at a quarter twist."""
-        joints = self._joints
-        q = [x for j in joints for x in j.position]
-        u = [x for j in joints for x in j.rate]
-        _, omega = self._attitude()
-        return momentum(self.equations.tree, q, omega, [0.0, 0.0, 0.0], u).angular[1]
+        """cos Θ cos Ψ (eq. 2.2): its sign changes at a quarter twist."""
+        _, x, _, z = self._attitude()[0]
+        return 1 - 2 * (x * x + z * z)
 
     def _attitude(self) -> tuple[list[Any], list[Any]]:
         return [self._y[k] for k in range(4)], [self._y[4 + k] for k in range(3)]
@@ -222,7 +219,12 @@ def _moves(kind: Kind) -> bool:
 def _parameter_count(joint: Joint, kind: Kind) -> int:
     if kind.motion == "prescribed":
         return 2 * kind.knots
-    return joint.coordinates if kind.motion == "locked" else 3
+    return joint.coordinates if kind.motion == "locked" else len(_NUMBERS)
+
+
+def _with_pretension(torques: list[Any], joints: list[_Joint]) -> list[Any]:
+    held = [j.numbers.get("pretension", 0.0) for j in joints for _ in j.rate]
+    return [torque + more for torque, more in zip(torques, held, strict=True)]
 
 
 def _coordinate_rates(joint: _Joint) -> list[Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
@@ -10,7 +9,8 @@ from typing import Literal
 import numpy as np
 
 from somersault._errors import SomersaultError
-from somersault.flight._moves import extremes
+from somersault.flight._moves import extremes, path
+from somersault.flight._numbers import number, numbers
 from somersault.model import Joint, Model
 
 Motion = Literal["locked", "free", "sprung", "prescribed"]
@@ -21,10 +21,10 @@ class JointTakeoff:
     """One joint at takeoff and after.
 
     "locked" holds its angle; "free" swings; "sprung" has stiffness (N m/rad), damping
-    (N m s/rad) and a rest angle, or with `hold` the rest angle at which the spring balances
-    the nominal spin; "prescribed" moves smoothly through `angles` at `times` (s), at rest at
-    each. What is None comes from the model: sprung where it has stiffness, else locked at
-    the pose in which the file draws it.
+    (N m s/rad) and a rest angle, or with `hold` is pretensioned so that at its takeoff angle
+    it balances the nominal spin; "prescribed" moves smoothly through `angles` at `times` (s),
+    at rest at each. What is None comes from the model: sprung where it has stiffness or is
+    given some, else locked at the pose in which the file draws it.
     """
 
     motion: Motion | None = None
@@ -43,9 +43,9 @@ class Takeoff:
     """The start of a flight. SI units and radians.
 
     Attitude by `somersault`, `tilt`, `twist`, or by a `quaternion` (body to inertial). One of
-    `spin` (rad/s of the nominal steady spin: the angular momentum is that of the takeoff pose
-    turning so about its principal axis nearest 2, along inertial axis 2, whatever the
-    attitude), `angular_velocity` (body axes) or `angular_momentum` (inertial axes, kg m²/s).
+    `spin` (rad/s about inertial axis 2, the rate of the nominal steady spin: Φ̇ = spin and
+    Θ̇ = Ψ̇ = 0 whatever the attitude), `angular_velocity` (body axes) or `angular_momentum`
+    (inertial axes, kg m²/s).
     `velocity` is that of the centre of mass (m/s).
     """
 
@@ -61,19 +61,15 @@ class Takeoff:
 
     def __post_init__(self) -> None:
         for name in ("somersault", "tilt", "twist"):
-            if not math.isfinite(getattr(self, name)):
-                raise SomersaultError(f"takeoff {name} is not a finite number; give one in rad")
+            number(f"takeoff {name}", getattr(self, name))
         for name, size in (
             ("quaternion", 4),
             ("angular_velocity", 3),
             ("angular_momentum", 3),
             ("velocity", 3),
         ):
-            value = getattr(self, name)
-            if value is not None and (
-                np.shape(value) != (size,) or not np.all(np.isfinite(np.asarray(value, float)))
-            ):
-                raise SomersaultError(f"takeoff {name} must be {size} finite numbers")
+            if getattr(self, name) is not None or name == "velocity":
+                numbers(f"takeoff {name}", getattr(self, name), size)
         given = [
             name
             for name in ("spin", "angular_velocity", "angular_momentum")
@@ -81,12 +77,12 @@ class Takeoff:
         ]
         if len(given) > 1:
             raise SomersaultError(f"takeoff gives {' and '.join(given)}; give one of them")
-        if self.spin is not None and (not math.isfinite(self.spin) or self.spin == 0):
+        if self.spin is not None and number("takeoff spin", self.spin) == 0:
             raise SomersaultError("takeoff spin must be a rate in rad/s that is not zero")
         if self.quaternion is not None:
             if self.somersault or self.tilt or self.twist:
                 raise SomersaultError("takeoff gives both angles and a quaternion; give one")
-            if np.linalg.norm(self.quaternion) == 0:
+            if not np.any(self.quaternion):
                 raise SomersaultError("takeoff quaternion is zero, which is no attitude")
 
 
@@ -101,6 +97,7 @@ class JointPlan:
     stiffness: float
     damping: float
     rest: float
+    pretension: float
     hold: bool
     times: tuple[float, ...]
     angles: tuple[float, ...]
@@ -115,56 +112,73 @@ def plans(model: Model, joints: Mapping[str, JointTakeoff]) -> tuple[JointPlan, 
 
 def _plan(joint: Joint, given: JointTakeoff) -> JointPlan:
     where = f"joint {joint.name}"
-    motion: Motion = given.motion or ("sprung" if joint.stiffness > 0 else "locked")
-    if motion not in ("locked", "free", "sprung", "prescribed"):
-        raise SomersaultError(
-            f"{where}: {motion!r} is no motion; use locked, free, sprung or prescribed"
-        )
-    numbers = (given.angle, given.rate, given.stiffness, given.damping, given.rest)
-    if not all(x is None or math.isfinite(x) for x in numbers):
-        raise SomersaultError(f"{where} has a number that is not finite")
+    for name in ("angle", "rate", "stiffness", "damping", "rest"):
+        if getattr(given, name) is not None:
+            number(f"{where}: {name}", getattr(given, name))
+    motion = _motion(joint, given, where)
     if joint.kind == "ball" and (
-        given.angle is not None or given.rate or motion == "prescribed" or given.hold
+        given.angle is not None
+        or given.rate
+        or given.rest is not None
+        or given.hold
+        or motion == "prescribed"
     ):
         raise SomersaultError(
             f"{where} is a ball: it can be locked, free or sprung from the pose it is drawn in"
         )
     if motion == "prescribed":
         return _prescribed(joint, given, where)
-    if given.times or given.angles:
+    if len(given.times) or len(given.angles):
         raise SomersaultError(f"{where} has times or angles but is {motion}, not prescribed")
     angle = joint.reference if given.angle is None else given.angle
     _within(joint, angle, angle, where)
-    if motion == "locked" and given.rate:
-        raise SomersaultError(f"{where} is locked, so it has no rate; leave rate out")
-    stiffness, damping = (
-        (joint.stiffness if given.stiffness is None else given.stiffness)
-        if motion == "sprung"
-        else 0.0,
-        0.0 if motion == "locked" else joint.damping if given.damping is None else given.damping,
-    )
-    if given.hold and (motion != "sprung" or stiffness == 0 or given.rest is not None):
-        raise SomersaultError(f"{where}: hold needs a spring, and no rest angle of its own")
-    rest = joint.rest if given.rest is None else given.rest
+    if motion == "locked" and (given.rate or given.damping):
+        raise SomersaultError(f"{where} is locked; leave its rate and damping out")
+    stiffness = damping = 0.0
+    if motion == "sprung":
+        stiffness = joint.stiffness if given.stiffness is None else given.stiffness
+    if motion != "locked":
+        damping = joint.damping if given.damping is None else given.damping
+    if given.hold and (motion != "sprung" or given.rest is not None):
+        raise SomersaultError(f"{where}: hold is for a sprung joint without a rest of its own")
+    rest = angle if given.hold else joint.rest if given.rest is None else given.rest
     position = joint.home if joint.kind == "ball" else (angle,)
     return JointPlan(
-        joint, motion, position, given.rate, stiffness, damping, rest, given.hold, (), ()
+        joint, motion, position, given.rate, stiffness, damping, rest, 0.0, given.hold, (), ()
     )
+
+
+def _motion(joint: Joint, given: JointTakeoff, where: str) -> Motion:
+    """What the joint does, asked or taken from the model."""
+    if given.damping is not None and given.damping < 0:
+        raise SomersaultError(f"{where} has negative damping; dampers are not negative")
+    if given.motion is None:
+        sprung = joint.stiffness > 0 if given.stiffness is None else True
+        return "sprung" if sprung else "locked"
+    if given.motion not in ("locked", "free", "sprung", "prescribed"):
+        raise SomersaultError(
+            f"{where}: {given.motion!r} is no motion; use locked, free, sprung or prescribed"
+        )
+    if given.motion != "sprung" and (given.stiffness or given.rest is not None):
+        raise SomersaultError(
+            f"{where} is {given.motion}, so its spring would do nothing; leave it out"
+        )
+    return given.motion
 
 
 def _prescribed(joint: Joint, given: JointTakeoff, where: str) -> JointPlan:
-    times, angles = np.asarray(given.times, float), np.asarray(given.angles, float)
+    times = numbers(f"{where}: times", given.times)
+    angles = numbers(f"{where}: angles", given.angles)
     try:
         low, high = extremes(times, angles)
     except SomersaultError as mistake:
         raise SomersaultError(f"{where}: its prescribed path {mistake}") from None
     _within(joint, low, high, where)
-    if given.angle is not None or given.rate:
-        raise SomersaultError(f"{where} is prescribed, so its angle and rate come from its path")
-    return JointPlan(
-        joint, "prescribed", (float(angles[0]),), 0.0, 0.0, 0.0, 0.0, False,
-        tuple(times.tolist()), tuple(angles.tolist()),
-    )  # fmt: skip
+    if given.angle is not None or given.rate or given.damping:
+        raise SomersaultError(f"{where} is prescribed: its angle and rate come from its path")
+    knots, held = tuple(times.tolist()), tuple(angles.tolist())
+    angle, rate, _ = (float(x) for x in path(0.0, knots, held))
+    return JointPlan(joint, "prescribed", (angle,), rate, 0.0, 0.0, 0.0, 0.0, False, knots, held)
 
 
 def _within(joint: Joint, low: float, high: float, where: str) -> None:

@@ -1,0 +1,88 @@
+"""Contact sheets: a flight as a row of pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from somersault._array import Array
+from somersault.attitude import matrix_from_quaternion
+from somersault.view import _figure as parts
+from somersault.view import _style as look
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from somersault.flight import Flight
+
+_VIEW = (35.0, 12.0)  # degrees: from the front, a little to the left and above
+
+
+def contact_sheet(
+    flight: Flight,
+    times: Sequence[float] | Array,
+    columns: int = 8,
+    view: tuple[float, float] = _VIEW,
+    title: str = "",
+) -> Figure:
+    """Pictures of a flight at some times (s), in rows, each with its time and its angles.
+
+    Each is the flight's sample nearest to the time asked for. The centre of mass stands
+    still; `view` is the camera's azimuth and elevation in degrees.
+    """
+    rows = -(-len(times) // columns)
+    made = look.figure(1.15 * columns, 1.75 * rows + 0.3)
+    grid = made.subplots(rows, 1, squeeze=False)[:, 0]
+    for row, ax in enumerate(grid):
+        strip(ax, flight, times[row * columns : (row + 1) * columns], columns, view)
+    if title:
+        made.suptitle(title, fontsize=10)
+    return made
+
+
+def strip(
+    ax: Axes,
+    flight: Flight,
+    times: Sequence[float] | Array,
+    columns: int | None = None,
+    view: tuple[float, float] = _VIEW,
+    words: bool = True,
+) -> None:
+    """One row of pictures of a flight on axes of their own."""
+    model = flight.system.model
+    history = flight.dataset
+    size = _size(flight)
+    seen = parts.camera(*view)
+    for place, moment in enumerate(times):
+        here = history.isel(time=int(np.argmin(np.abs(flight.times - moment))))
+        turn = matrix_from_quaternion(here["quaternion"].values)
+        x = 1.7 * size * place
+        parts.draw(ax, model, here["joint_angle"].values, turn, seen, (x, 0.0))
+        if words:
+            text = (
+                f"{float(here['time']):.2f} s\n{float(here['somersault']) / (2 * np.pi):.2f} turns\n"
+                f"twist {np.degrees(float(here['twist'])):.0f}°"
+            )
+            look.label(ax, x, -1.12 * size, text, look.GREY, ha="center", va="top", fontsize=7.5)
+    count = columns or len(times)
+    ax.set(xlim=(-0.95 * size, (1.7 * count - 0.75) * size))
+    ax.set_ylim(-(1.9 if words else 1.1) * size, 1.1 * size)
+    ax.set_aspect("equal")
+    ax.axis("off")
+
+
+def _size(flight: Flight) -> float:
+    """How far the model reaches from its centre of mass at takeoff, m."""
+    model, q = flight.system.model, flight.start.q
+    rotations, origins = parts.places(model, q)
+    centre = parts.centre_of_mass(model, q)
+    return max(
+        float(
+            np.linalg.norm(origins[s.body] + s.points @ rotations[s.body].T - centre, axis=1).max()
+        )
+        + s.radius
+        for s in parts.solids(model)
+    )
