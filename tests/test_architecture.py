@@ -53,7 +53,9 @@ def test_a_file_holds_one_idea(path: Path) -> None:
 def loaded_by(code: str) -> set[str]:
     """Top-level packages in memory after running some code in a fresh interpreter."""
     script = f"import sys\n{code}\nprint(*{{n.split('.')[0] for n in sys.modules}})"
-    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    run = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, encoding="utf-8", check=True
+    )
     return set(run.stdout.split())
 
 

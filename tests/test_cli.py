@@ -162,7 +162,10 @@ def test_any_words_end_in_a_code(words: list[str]) -> None:
 
 def run(*arguments: str, **more) -> subprocess.CompletedProcess:
     return subprocess.run(
-        [sys.executable, "-m", "somersault", *arguments], capture_output=True, text=True, **more
+        [sys.executable, "-m", "somersault", *arguments],
+        capture_output=True,
+        encoding="utf-8",
+        **more,
     )
 
 
@@ -177,5 +180,5 @@ def test_help_has_examples() -> None:
 @pytest.mark.skipif(os.name != "posix", reason="needs a shell pipe")
 def test_a_closed_pipe_is_no_error() -> None:
     line = f"{sys.executable} -m somersault models | head -c 1"
-    done = subprocess.run(["bash", "-c", line], capture_output=True, text=True)
+    done = subprocess.run(["bash", "-c", line], capture_output=True, encoding="utf-8")
     assert done.stderr == ""

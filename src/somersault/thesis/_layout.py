@@ -16,7 +16,7 @@ import numpy as np
 
 from somersault import stability as st
 from somersault._array import Array
-from somersault.attitude import body_rates, unwrapped_angles
+from somersault.attitude import unwrapped_angles
 from somersault.flight import Flight, JointTakeoff, Takeoff, fly
 from somersault.flight._start import start as begin
 from somersault.flight._system import kinds, system
@@ -37,8 +37,7 @@ def arms(angle: float, **options: Any) -> dict[str, JointTakeoff]:
 
 def sprung(angle: float, stiffness: float, damping: float = 0.0) -> dict[str, JointTakeoff]:
     """Shoulders with springs K_sh and dampers b/(Ω I_sh), pretensioned for the steady spin."""
-    # No stiffness at all is a constant torque: that of a very soft spring far from its rest.
-    k = max(stiffness, 1e-9) * SPIN**2 * shoulder_inertia()
+    k = stiffness * SPIN**2 * shoulder_inertia()
     b = damping * SPIN * shoulder_inertia()
     return arms(angle, motion="sprung", stiffness=k, damping=b, hold=True)
 
@@ -50,10 +49,16 @@ def takeoff(
     begun: Begun = "momentum",
 ) -> Takeoff:
     """A layout somersault at 8.64 rad/s from a tilt and a twist, rad."""
-    if begun == "momentum":
+    if begun == "rates":
         return Takeoff(tilt=tilt, twist=twist, spin=SPIN, joints=joints)
-    omega = body_rates([0.0, tilt, twist], [SPIN, 0.0, 0.0])
-    return Takeoff(tilt=tilt, twist=twist, angular_velocity=omega.tolist(), joints=joints)
+    inertia = _somersault_inertia(abs(float(joints["left_shoulder"].angle or 0.0)))
+    h = (0.0, SPIN * inertia, 0.0)
+    return Takeoff(tilt=tilt, twist=twist, angular_momentum=h, joints=joints)
+
+
+@cache
+def _somersault_inertia(angle: float) -> float:
+    return float(st.principal_inertias(MODEL, {"shoulder": angle})[1])
 
 
 @cache
@@ -94,12 +99,11 @@ def lifetimes(
     model = load(MODEL)
     states, numbers = [], []
     for angle in angles:
-        nominal = st.spin(model, 2, {"shoulder": float(angle)})
         for stiffness in stiffnesses:
             start = takeoff(sprung(float(angle), float(stiffness)), tilt, twist, begun)
             found = plans(model, start.joints)
             chosen = system(model, kinds(found), "quarter twist")
-            first = begin(chosen, start, found, nominal)
+            first = begin(chosen, start, found)
             states.append(chosen.start(first.quaternion, first.omega, first.q, first.u))
             numbers.append(chosen.parameter_vector(first.plans))
     times = np.linspace(0, 1.2 * most * TURN, int(60 * most))

@@ -3,18 +3,38 @@
 from __future__ import annotations
 
 from somersault.thesis._arm_shape import fig_4_20
+from somersault.thesis._asymmetry import fig_4_13
 from somersault.thesis._damping import energy, fig_4_7
 from somersault.thesis._edges import sec_4_3
 from somersault.thesis._entries import Entry
+from somersault.thesis._equations_2 import equations_2
+from somersault.thesis._gyric import fig_2_1, fig_2_2, fig_2_3, fig_2_4
+from somersault.thesis._humans import fig_2_5, fig_2_6
+from somersault.thesis._layout_flights import fig_4_2, sec_4_3_3
 from somersault.thesis._locus import fig_4_6, fig_4_8
 from somersault.thesis._matrices import appendix_a_3, equations
 from somersault.thesis._regions import fig_4_9, fig_4_10, fig_4_11
+from somersault.thesis._reorientation import fig_4_14, fig_4_15
+from somersault.thesis._ridge import fig_4_12
 from somersault.thesis._rigid import fig_4_5, table_4_1
 from somersault.thesis._rule import fig_4_17
 from somersault.thesis._simplest import fig_4_16, table_4_2, table_4_3
+from somersault.thesis._spheres import fig_2_7, fig_2_8, fig_3_3, fig_4_3
 from somersault.thesis._squares import fig_4_18, fig_4_19
 
 ENTRIES = (
+    Entry("fig2-1", "Figure 2-1: somersault, tilt and twist", "ch2", fig_2_1),
+    Entry("eq2", "Equations 2.1–2.14: the rigid body", "ch2", equations_2),
+    Entry("fig2-2", "Figure 2-2: the inertia ratio diagram", "ch2", fig_2_2),
+    Entry("fig2-3", "Figure 2-3: stability of the simple spins", "ch2", fig_2_3),
+    Entry("fig2-4", "Figure 2-4: curves of equal growth", "ch2", fig_2_4),
+    Entry("fig2-5", "Figure 2-5: tuck, pike and layout", "ch2", fig_2_5),
+    Entry("fig2-6", "Figure 2-6: inertia ratios of the three postures", "ch2", fig_2_6),
+    Entry("fig2-7", "Figure 2-7: a map of rigid body rotation", "ch2", fig_2_7),
+    Entry("fig2-8", "Figure 2-8: tilt and twist on the map", "ch2", fig_2_8),
+    Entry("fig3-3", "Figure 3-3: the map of a spin about the major axis", "ch3", fig_3_3),
+    Entry("fig4-2", "Figure 4-2: the layout, rigid and passively stable", "ch4", fig_4_2),
+    Entry("fig4-3", "Figure 4-3: the map of the rigid layout", "ch4", fig_4_3),
     Entry("table4-1", "Table 4.1: Carl Furrer's inertia data", "ch4", table_4_1),
     Entry("eq4-1", "Equations 4.1–4.9: small deviations from a somersault", "ch4", equations),
     Entry("appA-3", "Appendix A.3: elements of the linear model", "ch4", appendix_a_3),
@@ -27,6 +47,11 @@ ENTRIES = (
     Entry("fig4-10", "Figure 4-10: tilt, twist and asymmetric arms", "ch4", fig_4_10),
     Entry("fig4-11", "Figure 4-11: somersault and symmetric arms", "ch4", fig_4_11),
     Entry("sec4-3", "Section 4.3: edges at a dozen arm angles", "ch4", sec_4_3),
+    Entry("fig4-12", "Figure 4-12: somersaults until a quarter twist", "ch4", fig_4_12),
+    Entry("sec4-3-3", "Section 4.3.3: two thousand seconds", "ch4", sec_4_3_3),
+    Entry("fig4-13", "Figure 4-13: turning the principal axes with an arm", "ch4", fig_4_13),
+    Entry("fig4-14", "Figure 4-14: rigid trajectories near the middle axis", "ch4", fig_4_14),
+    Entry("fig4-15", "Figure 4-15: the passively stable trajectory", "ch4", fig_4_15),
     Entry("fig4-16", "Figure 4-16: the simplest model", "ch4", fig_4_16),
     Entry("table4-2", "Table 4.2 and equation 4.11: its elements", "ch4", table_4_2),
     Entry("table4-3", "Table 4.3: Furrer's non-dimensional parameters", "ch4", table_4_3),

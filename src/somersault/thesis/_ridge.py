@@ -69,10 +69,10 @@ def fig_4_12() -> Result:
         ))  # fmt: skip
     claims += _joint_claims(counts)
     return Result(
-        "Stable somersaults, at most eight, that the five-d.o.f. model does before a quarter twist, "
-        "over Γ from 0.4 to 2.2 rad and K_sh from 0 to 1.8, for three starts: the region that the "
-        "linear analysis predicted to be stable (figure 4-9) is also the one that produces the most "
-        "stable somersaults, and their number is sensitive to the initial tilt and twist.",
+        "Stable somersaults, at most eight, that the five-d.o.f. model does before a quarter "
+        "twist, over Γ from 0.4 to 2.2 rad and K_sh from 0 to 1.8, for three starts: the region that "
+        "the linear analysis predicted to be stable (figure 4-9) is also the one that produces the "
+        "most stable somersaults, and their number is sensitive to the initial tilt and twist.",
         "Starts (ours; the thesis's are not printed): tilt 0.01 rad; tilt 0.05 rad; twist 0.05 "
         f"rad; of the angles' rates only the somersault's, {SPIN} rad/s; springs pretensioned; "
         "K_sh = 0 is a constant torque. The quarter twist is an event of the integration: angular "
@@ -160,5 +160,7 @@ def _draw_4_12() -> Figure:
     grid[0].set_ylabel("shoulder stiffness $K_{sh}$")
     bar = made.colorbar(shown, ax=grid, shrink=0.8)
     bar.set_label("somersaults until a quarter twist (at most 8)")
-    look.label(grid[0], 0.45, 0.12, "outlined: stable by the\nlinear analysis (fig. 4-9)", look.VERMILION)
+    look.label(
+        grid[0], 0.45, 0.12, "outlined: stable by the\nlinear analysis (fig. 4-9)", look.VERMILION
+    )
     return made

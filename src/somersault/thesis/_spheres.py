@@ -199,9 +199,9 @@ def _draw_2_8() -> Figure:
         shown = np.where(((equator[:, 2] > 0) == front)[:, None], equator[:, :2], np.nan)
         ax.plot(*shown.T, color=look.GREY, lw=1.0 if front else 0.5, ls="-" if front else ":")
     for axis, name in enumerate(("1", "2", "3")):
-        tip = 1.35 * seen[:2, axis]
-        ax.annotate("", tip, (0, 0), arrowprops={"arrowstyle": "-|>", "color": look.GREEN})
-        look.label(ax, *(1.08 * tip), name, look.GREEN, ha="center")
+        x, y = (float(c) for c in 1.35 * seen[:2, axis])
+        ax.annotate("", (x, y), (0, 0), arrowprops={"arrowstyle": "-|>", "color": look.GREEN})
+        look.label(ax, 1.08 * x, 1.08 * y, name, look.GREEN, ha="center")
     tilt, twist = np.radians([-40.0, 50.0])
     spot = seen @ rigid.momentum_direction(tilt, twist)
     foot = seen @ rigid.momentum_direction(0.0, twist)
@@ -213,13 +213,15 @@ def _draw_2_8() -> Figure:
         ax.plot(*(arc @ seen[:2].T).T, color=color, lw=2.4)
     ax.plot([0, foot[0]], [0, foot[1]], color=look.GREY, lw=0.8, ls="--")
     ax.annotate(
-        "", 1.02 * spot[:2], (0, 0), arrowprops={"arrowstyle": "-|>", "lw": 2, "color": look.BLACK}
+        "", (float(spot[0]), float(spot[1])), (0, 0), arrowprops={"arrowstyle": "-|>", "lw": 2, "color": look.BLACK}
     )
     look.label(ax, spot[0] - 0.05, spot[1] + 0.12, "h", fontsize=12, ha="right")
     half = seen @ rigid.momentum_direction(0.0, 0.5 * twist)
-    look.label(ax, half[0], half[1] - 0.14, "twist Ψ > 0", look.VERMILION, ha="center")
+    look.label(
+        ax, half[0], half[1] - 0.14, "longitude −Ψ (here twist Ψ > 0)", look.VERMILION, ha="center"
+    )
     up = seen @ rigid.momentum_direction(0.5 * tilt, twist)
-    look.label(ax, up[0] - 0.08, up[1], "−Θ\n(here tilt < 0)", look.BLUE, ha="right")
+    look.label(ax, up[0] + 0.08, up[1], "latitude −Θ\n(here tilt Θ < 0)", look.BLUE)
     ax.set(xlim=(-1.5, 1.6), ylim=(-1.3, 1.5))
     ax.set_aspect("equal")
     ax.axis("off")
@@ -285,13 +287,13 @@ def fig_4_3() -> Result:
     tilt, _ = rigid.tilt_and_twist(circles)
     widest = float(np.degrees(np.abs(tilt).max()))
     order = [int(k) for k in np.argsort(inertias)]
+    growth = float(rigid.growth_angle(*rigid.inertia_ratios(*inertias)))
     claims = (
         statement(
             "fig4-3.middle", "§4.1, Figure 4-3", "the layout somersault is about the middle axis, "
             "upon which trajectories converge and diverge", "middle axis, unstable",
-            f"axis 2 is the middle one, and the separatrix crosses on it: growth "
-            f"{rigid.growth_angle(*rigid.inertia_ratios(*inertias)):.2f} rad to tenfold",
-            order[1] == 1 and bool(np.isfinite(rigid.growth_angle(*rigid.inertia_ratios(*inertias)))),
+            f"axis 2 is the middle one, and the separatrix crosses on it: tenfold growth in "
+            f"{growth:.2f} rad", order[1] == 1 and bool(np.isfinite(growth)),
         ),
         statement(
             "fig4-3.major", "§4.1", "the maximum principal axis is front-to-back", "front-to-back",

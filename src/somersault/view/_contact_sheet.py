@@ -62,8 +62,9 @@ def strip(
         x = 1.7 * size * place
         parts.draw(ax, model, here["joint_angle"].values, turn, seen, (x, 0.0))
         if words:
+            turns = float(here["somersault"]) / (2 * np.pi)
             text = (
-                f"{float(here['time']):.2f} s\n{float(here['somersault']) / (2 * np.pi):.2f} turns\n"
+                f"{float(here['time']):.2f} s\n{turns:.2f} turns\n"
                 f"twist {np.degrees(float(here['twist'])):.0f}°"
             )
             look.label(ax, x, -1.12 * size, text, look.GREY, ha="center", va="top", fontsize=7.5)

@@ -10,7 +10,7 @@ import numpy as np
 
 from somersault._array import Array
 from somersault.attitude import matrix_from_quaternion
-from somersault.model import GROUND, Joint, Model, load, shipped
+from somersault.model import GROUND, Body, Joint, Model, load, shipped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -145,11 +145,8 @@ def _sticks(model: Model) -> tuple[Solid, ...]:
     return tuple(Solid(index, points, _STICK * size) for index, points in segments)
 
 
-def _joint_in(child: object) -> Array:
+def _joint_in(child: Body) -> Array:
     """A child's joint in its parent's axes."""
-    from somersault.model import Body
-
-    assert isinstance(child, Body)
     anchor = np.array(child.joints[0].anchor) if child.joints else np.zeros(3)
     return np.array(child.position) + np.array(child.rotation) @ anchor
 
@@ -203,10 +200,7 @@ def _outline(flat: Array, radius: float) -> Array:
     """The hull (k, 2) of points in the picture, each with a disc around it."""
     from scipy.spatial import ConvexHull
 
-    disc = radius * np.stack([np.cos(_ROUND), np.sin(_ROUND)], -1)
+    # A box has sharp corners; the disc of a tenth of a millimetre keeps its hull from degenerating.
+    disc = max(radius, 1e-4) * np.stack([np.cos(_ROUND), np.sin(_ROUND)], -1)
     cloud = (flat[:, None, :] + disc).reshape(-1, 2)
-    if radius == 0:
-        cloud = cloud + 1e-4 * np.tile(
-            disc / 1.0 + np.stack([np.cos(_ROUND), np.sin(_ROUND)], -1), (len(flat), 1)
-        )
     return cloud[ConvexHull(cloud).vertices]

@@ -84,7 +84,7 @@ def globe(
         ax.annotate(
             "", end, start, arrowprops={"arrowstyle": "-|>", "color": look.GREEN, "lw": 1.6}
         )
-        look.label(ax, *(1.12 * end), name, look.GREEN, ha="center")
+        look.label(ax, 1.12 * float(end[0]), 1.12 * float(end[1]), name, look.GREEN, ha="center")
     ax.set(xlim=(-1.5, 1.5), ylim=(-1.45, 1.7), title="Directions of angular momentum in the body")
     ax.set_aspect("equal")
     ax.axis("off")
