@@ -8,8 +8,11 @@ JOBS ?= auto
 .PHONY: reproduce test slow check bench docs pins clean
 .DEFAULT_GOAL := reproduce
 
-reproduce: $(VENV)/.package
+reproduce: report/claims.json
+
+report/claims.json: $(VENV)/.package $(shell find src -name '*.py' -o -name '*.xml')
 	$(BIN)/somersault reproduce --out report
+	touch $@
 
 test: $(VENV)/.test
 	$(BIN)/python -m pytest -n $(JOBS) -m "not slow"

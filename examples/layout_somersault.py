@@ -17,8 +17,8 @@ joint = sys.argv[2] if len(sys.argv) > 2 else "shoulder"
 
 chart = so.stability.chart(
     model,
-    x=(f"pose.{joint}", np.linspace(0.0, 3.0, 301)),
-    y=(f"stiffness.{joint}", np.linspace(-2.0, 4.0, 601)),
+    x=(f"pose.{joint}", np.linspace(0.0, 3.0, 601)),
+    y=(f"stiffness.{joint}", np.linspace(-1.5, 2.0, 2801)),
 )
 stability_chart(chart).savefig("stability.png", dpi=160)
 

@@ -12,7 +12,7 @@ from scipy.optimize import linear_sum_assignment
 from trees import random_rotation, random_tree
 
 from somersault import SomersaultError
-from somersault.model import Body, Model, load
+from somersault.model import Body, Joint, Model, load
 from somersault.model._weld import as_matrix, as_vector
 from somersault.stability import Spin, chart, root_locus, spin, stable_ranges
 
@@ -371,7 +371,7 @@ MISTAKES = {
     "'toe'": lambda: spin("furrer").linear(lock=["toe"]),
     "stiffness of left_shoulder": lambda: spin("furrer").linear({"shoulder": np.inf}),
     "rate of 0": lambda: spin("furrer").linear(rate=0.0),
-    "rate of nan": lambda: spin("furrer").linear(rate=np.nan),
+    "spin rate is nan": lambda: spin("furrer").linear(rate=np.nan),
     "'roll'; there are tilt": lambda: spin("furrer").linear().subsystem("roll"),
     "pose.shoulder against itself": lambda: chart("furrer", *[("pose.shoulder", [1.0])] * 2),
     "'poise.x'": lambda: chart("furrer", ("poise.x", [1.0]), ("pose.shoulder", [1.0])),
@@ -392,3 +392,47 @@ def test_mistakes_are_told_in_one_sentence(told: str) -> None:
         MISTAKES[told]()
     assert told in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("angle", np.linspace(0.6, 2.3, 18))
+def test_modes_keep_to_their_subsystem_and_count_negative_energies(angle: float) -> None:
+    """Each mode of negative energy accounts for two negative directions of the energy."""
+    steady = spin("furrer", 2, {"shoulder": angle})
+    for stiffness in (0.3, 0.9, 1.2, 3.0):
+        system = steady.linear({"shoulder": stiffness})
+        assert len(system.subsystems) == 2
+        for mode in system.modes:
+            taking = {c for c, x in zip(system.coordinates, mode.shape, strict=True) if x != 0}
+            assert any(taking <= set(group) for group in system.subsystems)
+        if system.stable:
+            negative = sum(mode.energy < 0 for mode in system.modes)
+            assert int((system.potential < 0).sum()) == 2 * negative
+
+
+def test_neutral_spins_are_called_neutral() -> None:
+    """A sphere: nothing restores a displaced axis, and nothing drives it away."""
+    round_ = tuple(tuple(0.4 * (i == j) for j in range(3)) for i in range(3))
+    sphere = Model("sphere", True, (Body("ball", -1, 1.0, (0.0, 0.0, 0.0), round_),))
+    system = spin(sphere).linear()
+    assert system.stable
+    assert system.energy_signature == "neutral"
+
+
+def test_rounding_leaves_no_dust() -> None:
+    system = spin("furrer", 2, {"shoulder": 1.3}).linear({"shoulder": 1.2})
+    for matrix in (system.M, system.G, system.K, system.K_springs):
+        entries = np.abs(matrix[matrix != 0])
+        assert entries.min() > 1e-6
+
+
+def test_large_models_need_no_compiling() -> None:
+    """One spin of a chain of twenty oblique hinges is a matter of a second, not of minutes."""
+    rng = np.random.default_rng(1)
+    eye = tuple(tuple(0.01 * (i == j) for j in range(3)) for i in range(3))
+    bodies = [Body("base", -1, 5.0, (0.0, 0.0, 0.0), ((0.2, 0, 0), (0, 0.3, 0), (0, 0, 0.4)))]
+    for k in range(20):
+        axis = rng.normal(size=3)
+        joint = Joint(f"j{k}", "hinge", tuple((axis / np.linalg.norm(axis)).tolist()))
+        bodies.append(Body(f"b{k}", k, 0.5, (0.0, 0.0, 0.1), eye, (0.0, 0.0, 0.2), joints=(joint,)))
+    system = spin(Model("chain", True, tuple(bodies)), "major").linear(lock=["j0", "j7"])
+    assert len(system.roots) == 2 * (3 + 18)

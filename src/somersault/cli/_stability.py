@@ -111,6 +111,7 @@ def _record(system: LinearSpin, axis: str) -> dict[str, Any]:
 _WHY = {
     "definite": "its energy is an extremum among motions of the same angular momentum",
     "gyroscopic": "only gyroscopic coupling holds it, so damping would destroy it",
+    "neutral": "some deviation leaves its energy as it is, so nothing restores that",
     "unstable": "neither its energy nor gyroscopic coupling holds it",
 }
 
@@ -130,7 +131,7 @@ def _page(system: LinearSpin, axis: str) -> list[str]:
         held = ", ".join(f"{name} {value:.4g}" for name, value in steady.holding_torques.items())
         lines.append(f"  holding torques over Ω²: {held}")
     lines.append("  modes (roots in units of the spin rate Ω):")
-    width = max(len(mode.name) for mode in system.modes)
+    width = min(48, max(len(mode.name) for mode in system.modes))
     sign = {1: "positive energy", -1: "negative energy", 0: ""}
     for mode in system.modes:
         real, imaginary = (round(x, 4) + 0.0 for x in (mode.root.real, mode.root.imag))

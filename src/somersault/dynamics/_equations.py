@@ -26,7 +26,7 @@ from somersault.dynamics._motion import place
 from somersault.dynamics._newton_euler import inverse_dynamics, momentum
 from somersault.dynamics._tree import Tree, parameter_names, parameter_value, tree
 from somersault.dynamics._vector import Mat, Vec, cross, matmul, scale, tilde, transpose, vadd, vsub
-from somersault.model._types import Model
+from somersault.model import Model, load
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,8 +71,8 @@ class Equations:
         "outboard_inertia",
     )
 
-    def __init__(self, model: Model, parameters: Sequence[str] = ()) -> None:
-        self.model = model
+    def __init__(self, model: str | Model, parameters: Sequence[str] = ()) -> None:
+        self.model = model = load(model)
         self.parameters = tuple(parameters)
         known = [*parameter_names(model), *_springs.parameter_names(model)]
         for name in self.parameters:
@@ -174,7 +174,10 @@ class Equations:
         arguments.setdefault("parameters", self.values)
         arrays = []
         for name, symbol in expression.arguments.items():
-            array = np.asarray(arguments.get(name, np.zeros(symbol.numel())), float)
+            try:
+                array = np.asarray(arguments.get(name, np.zeros(symbol.numel())), float)
+            except (TypeError, ValueError):
+                raise SomersaultError(f"{expression.name}: {name} must be numbers") from None
             if array.shape[-1:] != (symbol.numel(),):
                 raise SomersaultError(
                     f"{expression.name}: {name} has shape {array.shape}, but its last dimension "

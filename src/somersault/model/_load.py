@@ -31,6 +31,8 @@ def load(source: str | os.PathLike[str] | Model) -> Model:
         return source
     try:
         name = os.fspath(source)
+        if not isinstance(name, str):
+            raise TypeError
     except TypeError:
         raise SomersaultError(
             f"{source!r} is no model; give a shipped model's name, a file, or a Model"

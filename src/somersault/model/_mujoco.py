@@ -43,6 +43,10 @@ def _root_link(path: Path) -> str | None:
     children = {child.get("link") for child in robot.findall("./joint/child")}
     names = [link.get("name") for link in robot.findall("./link")]
     roots = [name for name in names if name not in children]
+    joints = [joint.get("name") for joint in robot.findall("./joint")]
+    twice = next((name for name in joints if joints.count(name) > 1), None)
+    if twice is not None:
+        raise SomersaultError(f"{path.name} has two joints named {twice!r}; rename one")
     if len(roots) > 1:
         raise SomersaultError(
             f"{path.name} has {len(roots)} links without a parent, {roots[0]!r} and {roots[1]!r} "
@@ -67,6 +71,7 @@ def _read(path: Path, free_root: str | None) -> Model:
             if root is None:
                 raise ValueError(f"its root link {free_root!r} is not found; save it as UTF-8")
             root.add_freejoint()
+        _refuse_muscles(path.name, spec)
         compiled = spec.compile()
     except (ValueError, RuntimeError, OSError, AttributeError, mujoco.FatalError) as error:
         raise SomersaultError(
@@ -82,8 +87,29 @@ def _read(path: Path, free_root: str | None) -> Model:
     return Model(path.stem, free, merge_welded(bodies, free), _ignored(compiled))
 
 
+_PLAINER = {
+    "mass and inertia of moving bodies must be larger than mjMINVAL": "a body that moves has a "
+    "mass or an inertia that is zero, negative or not a number",
+    "inertia must satisfy A + B >= C; use 'balanceinertia' to fix": "a body has a principal "
+    "inertia that is larger than the sum of the other two, or not a number",
+}
+
+
+def _refuse_muscles(file: str, spec: Any) -> None:
+    import mujoco
+
+    for actuator in spec.actuators:
+        if actuator.gaintype == mujoco.mjtGain.mjGAIN_MUSCLE:
+            raise SomersaultError(
+                f"{file}: actuator {actuator.name!r} is a muscle, which pulls even when it is not "
+                "driven; remove it"
+            )
+
+
 def _one_line(error: Exception) -> str:
     text = re.sub(r"\s+", " ", str(error)).strip().rstrip(".")
+    for theirs, ours in _PLAINER.items():
+        text = text.replace(theirs, ours)
     text = re.sub(r"^(XML )?[Ee]rror:\s*", "", text)
     return text[:300] if text else type(error).__name__
 
@@ -181,8 +207,6 @@ def _matrix(rows: Any) -> Matrix:
 
 def _refuse(file: str, m: Any) -> None:
     """Refuse what would change a flight and that a `Model` does not hold."""
-    import mujoco
-
     for j in range(m.njnt):
         _refuse_joint(file, m, j)
     if np.any(m.body_gravcomp):
@@ -222,13 +246,6 @@ def _refuse(file: str, m: Any) -> None:
             raise SomersaultError(
                 f"{file}: tendon {m.tendon(t).name or t!r} has stiffness, damping, friction, "
                 "armature or limits, which cannot be carried; remove them or the tendon"
-            )
-    muscle = int(mujoco.mjtGain.mjGAIN_MUSCLE)
-    for a in range(m.nu):
-        if m.actuator_gaintype[a] == muscle:
-            raise SomersaultError(
-                f"{file}: actuator {m.actuator(a).name or a!r} is a muscle, which pulls even when "
-                "it is not driven; remove it"
             )
     if m.opt.density > 0 or m.opt.viscosity > 0 or np.any(m.opt.wind):
         raise SomersaultError(

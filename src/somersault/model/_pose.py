@@ -97,7 +97,7 @@ def spread(
             both = {name: value}
         for speed in both:
             if speed in result:
-                raise SomersaultError(f"{speed} is given twice, once as {name}; give it once")
+                raise SomersaultError(f"{speed} is given twice, by its own name and its pair's")
         result |= both
     return result
 

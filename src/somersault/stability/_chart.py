@@ -49,9 +49,7 @@ class _System:
     def parts(self, subsystem: str | None) -> list[_System]:
         """The decoupled parts, or only the one with a coordinate."""
         near = coupled(self.mass, self.rate, self.stiffness)
-        if self.attitude.before is not None and self.attitude.after is not None:
-            near[self.attitude.before, self.attitude.after] = True
-        groups = _gyric.blocks(near)
+        groups = _gyric.blocks(_gyric.together(near, self.attitude))
         if subsystem is not None:
             if subsystem not in self.names:
                 raise SomersaultError(
@@ -86,11 +84,23 @@ def _system(
     require_inertia(model, about.inertias)
     index = _one_axis(model, about, axis)
     turned = evaluated(model, q, about.axes[..., index], names, values)
+    _require_definite(model, turned.mass)
     chosen = coordinates(model, index + 1, locked_speeds(model, lock))
     mass, gyric, own = (chosen.transformed(a) for a in turned.in_axes(about.axes))
     springs = _joint_terms(model, kinds["stiffness"], turned.outboard, chosen.columns)
     dampers = _joint_terms(model, kinds["damping"], turned.outboard, chosen.columns)
     return _System(chosen.names, mass, gyric + dampers, own + springs, chosen.attitude)
+
+
+def _require_definite(model: Model, mass: Array) -> None:
+    """Refuse bodies that no masses make: their kinetic energy could be negative."""
+    try:
+        np.linalg.cholesky(mass)
+    except np.linalg.LinAlgError:
+        raise SomersaultError(
+            f"somewhere in this chart {model.name} is no body, as its mass matrix is not positive; "
+            "narrow the values"
+        ) from None
 
 
 def _sorted_kinds(model: Model, quantities: Values) -> dict[str, dict[str, ArrayLike]]:
@@ -106,8 +116,15 @@ def _sorted_kinds(model: Model, quantities: Values) -> dict[str, dict[str, Array
                 f"{name!r} is no quantity of {model.name}; use pose.JOINT, stiffness.JOINT, "
                 "damping.JOINT, mass.BODY, com.BODY.1, position.BODY.1 or inertia.BODY.11"
             )
-        if not np.all(np.isfinite(np.asarray(value, float))):
+        try:
+            numbers = np.asarray(value, float)
+        except (TypeError, ValueError):
+            numbers = np.array(np.nan)
+        if not np.all(np.isfinite(numbers)):
             raise SomersaultError(f"{name} has values that are not finite; give finite numbers")
+        least = {"mass": 1e-300, "damping": 0.0}.get(kind, -np.inf)
+        if np.any(numbers < least):
+            raise SomersaultError(f"{name} goes down to {numbers.min():g}; it must be positive")
     return kinds
 
 
@@ -217,9 +234,7 @@ def chart(
     import xarray as xr
 
     model = load(model)
-    (x_name, x_values), (y_name, y_values) = (
-        (name, np.asarray(values, float)) for name, values in (x, y)
-    )
+    (x_name, x_values), (y_name, y_values) = _row(x), _row(y)
     if x_values.ndim != 1 or y_values.ndim != 1 or not x_values.size or not y_values.size:
         raise SomersaultError("a chart needs one row of values for each of x and y")
     if x_name == y_name:
@@ -244,6 +259,16 @@ def chart(
         },
         attrs={"model": model.name, "axis": str(axis), "subsystem": subsystem or "all"},
     )
+
+
+def _row(given: Any) -> tuple[str, Array]:
+    try:
+        name, values = given
+        return str(name), np.asarray(values, float)
+    except (TypeError, ValueError):
+        raise SomersaultError(
+            f"x and y of a chart are a name and values, ('pose.shoulder', [0, 1]), not {given!r}"
+        ) from None
 
 
 def unit(model: Model, name: str) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 from somersault._array import Array
 from somersault.model import Model
 from somersault.model._mirror import mirror_pairs
-from somersault.stability._gyric import Attitude, blocks
+from somersault.stability._gyric import Attitude, blocks, together
 from somersault.stability._spin import cycle
 
 _TURNS = ("tilt", "somersault", "twist")  # about axes 1, 2, 3
@@ -29,10 +29,7 @@ class Coordinates:
 
     def ordered(self, coupled: Array) -> list[int]:
         """Decoupled subsystems one after the other, the one of tilt and twist first."""
-        together = coupled.copy()
-        if self.attitude.before is not None and self.attitude.after is not None:
-            together[self.attitude.before, self.attitude.after] = True
-        return [i for group in blocks(together) for i in group]
+        return [i for group in blocks(together(coupled, self.attitude)) for i in group]
 
 
 def coordinates(model: Model, axis: int, locked: set[int]) -> Coordinates:

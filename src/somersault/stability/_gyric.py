@@ -161,6 +161,15 @@ def _threaded(function: Callable[[Array], Array], matrices: Array) -> Array:
     return np.concatenate(parts).reshape(matrices.shape[:-2])
 
 
+def together(coupled: Array, attitude: Attitude) -> Array:
+    """The couplings, with the two turns across the spin in one group: they share an integral."""
+    if attitude.before is None or attitude.after is None:
+        return coupled
+    near = coupled.copy()
+    near[attitude.before, attitude.after] = True
+    return near
+
+
 def blocks(coupled: Array) -> list[list[int]]:
     """Groups of coordinates that do not act on each other: connected components, in order."""
     n = len(coupled)

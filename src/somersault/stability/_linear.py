@@ -19,6 +19,8 @@ from somersault.stability._gyric import TOLERANCE, Attitude
 from somersault.stability._modes import Mode, modes
 from somersault.stability._spin import Spin
 
+_MOST = 1e9  # non-dimensional stiffness or damping beyond which roots are rounding
+
 
 @dataclass(frozen=True, eq=False)
 class LinearSpin:
@@ -83,7 +85,11 @@ class LinearSpin:
         "definite": its energy is a strict minimum (or, with no joint free to move, maximum)
         among motions of the same angular momentum, so it stays stable, with dampers too.
         "gyroscopic": the energy is a saddle, and only gyroscopic coupling holds it; damping
-        destroys it. "unstable": neither does.
+        destroys it. "neutral": nothing grows, but some deviation leaves the energy as it is, so
+        nothing restores it either. "unstable": it grows.
+
+        A ball joint's holding torque is constant in its body's axes and so has no energy; K is
+        then not symmetric, and the signature is that of its symmetric part.
         """
         if not self.potential.size:  # nothing but the drift of the spin's own angle
             return "definite"
@@ -92,8 +98,10 @@ class LinearSpin:
         rigid = len(self.coordinates) == len(self.attitude.places())
         if low > small or (rigid and high < -small):
             return "definite"
-        undamped = replace(self, D=np.zeros_like(self.D))
-        return "gyroscopic" if undamped.stable else "unstable"
+        if not replace(self, D=np.zeros_like(self.D)).stable:
+            return "unstable"
+        one_sided = low >= -small or (rigid and high <= small)
+        return "neutral" if one_sided else "gyroscopic"
 
     @cached_property
     def modes(self) -> tuple[Mode, ...]:
@@ -103,10 +111,13 @@ class LinearSpin:
     @cached_property
     def subsystems(self) -> tuple[tuple[str, ...], ...]:
         """Coordinates in groups that do not act on each other."""
-        return tuple(
-            tuple(self.coordinates[i] for i in group)
-            for group in _gyric.blocks(coupled(self.M, self.G, self.K, self.K_springs, self.D))
-        )
+        return tuple(tuple(self.coordinates[i] for i in group) for group in self.groups)
+
+    @cached_property
+    def groups(self) -> list[list[int]]:
+        """Places of the coordinates of each subsystem."""
+        near = coupled(self.M, self.G, self.K, self.K_springs, self.D)
+        return _gyric.blocks(_gyric.together(near, self.attitude))
 
     def subsystem(self, coordinate: str) -> LinearSpin:
         """The decoupled part that holds a coordinate, as a system of its own."""
@@ -115,9 +126,9 @@ class LinearSpin:
             raise SomersaultError(
                 f"there is no coordinate {coordinate!r}; there are {', '.join(self.coordinates)}"
             )
-        return self._part([self.coordinates.index(name) for name in group])
+        return self.part([self.coordinates.index(name) for name in group])
 
-    def _part(self, keep: list[int]) -> LinearSpin:
+    def part(self, keep: list[int]) -> LinearSpin:
         at = np.ix_(keep, keep)
         return LinearSpin(
             self.spin,
@@ -173,6 +184,9 @@ def linear(
     rate: float | None,
 ) -> LinearSpin:
     """What `Spin.linear` gives; its documentation says what the arguments mean."""
+    for what, given in (("stiffness", stiffness), ("damping", damping)):
+        if not isinstance(given, Mapping):
+            raise SomersaultError(f"{what} gives numbers by joint, and is {given!r}")
     chosen = coordinates(spin.model, spin.axis, locked_speeds(spin.model, lock))
     own_k, own_d = (np.array(x) for x in _own(spin, rate))
     k = diagonal(spin, stiffness, "stiffness", own_k)
@@ -184,6 +198,11 @@ def linear(
     order = chosen.ordered(coupled(m, g, k_spin, springs, dampers))
     at = np.ix_(order, order)
     names = tuple(chosen.names[i] for i in order)
+    size = np.sqrt(np.diag(m))
+    m, g, k_spin, springs, dampers = (
+        np.where(np.abs(a) > 1e-14 * np.outer(size, size), a, 0.0)  # what rounding left
+        for a in (m, g, k_spin, springs, dampers)
+    )
     return LinearSpin(
         spin,
         names,
@@ -201,8 +220,8 @@ def _own(spin: Spin, rate: float | None) -> tuple[list[float], list[float]]:
     joints = [joint for joint in spin.model.joints for _ in range(joint.speeds)]
     if rate is None:
         return [0.0] * len(joints), [0.0] * len(joints)
-    if not np.isfinite(rate) or rate == 0:
-        raise SomersaultError(f"a spin rate of {rate} rad/s is no spin; give one that is not zero")
+    if not 1e-6 <= abs(one_number("the spin rate", rate)) <= 1e6:
+        raise SomersaultError(f"a spin rate of {rate} rad/s is no spin; give 1e-6 to 1e6")
     return [j.stiffness / rate**2 for j in joints], [j.damping / abs(rate) for j in joints]
 
 
@@ -211,6 +230,8 @@ def diagonal(spin: Spin, given: Mapping[str, float], what: str, default: Array) 
     result = default.copy()
     for name, value in spread(spin.model, given, mirrored=False).items():
         number = one_number(f"{what} of {name}", value)
+        if abs(number) > _MOST:
+            raise SomersaultError(f"{what} of {name} is {number:g}; lock a joint that stiff")
         if number < 0 and what == "damping":
             raise SomersaultError(f"damping of {name} is {number:g}; dampers are not negative")
         own = spin.model.speed_slice(name)
@@ -233,7 +254,10 @@ def locked_speeds(model: Model, lock: Iterable[str]) -> set[int]:
     """Places of the locked joints' speeds; "all" locks every joint."""
     if isinstance(lock, str):
         lock = [lock]
-    names = list(lock)
+    try:
+        names = [str(name) for name in lock]
+    except TypeError:
+        raise SomersaultError(f"lock takes joint names, and is {lock!r}") from None
     if "all" in names:
         names = [joint.name for joint in model.joints]
     places: set[int] = set()

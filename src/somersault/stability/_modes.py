@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,14 +34,24 @@ class Mode:
 
 
 def modes(system: LinearSpin) -> tuple[Mode, ...]:
-    """One mode for each root with Im ≥ 0, slowest first; drifts of the spin angle as one."""
-    m, c, k = system.M, system.G + system.D, system.K + system.K_springs
+    """One mode for each root with Im ≥ 0, slowest first; drifts of the spin angle as one.
+
+    Subsystem by subsystem, so that rounding cannot mix what does not act on each other.
+    """
+    found = [mode for group in system.groups for mode in _of_part(system, group)]
+    found.sort(key=lambda mode: (round(mode.root.imag, 9), round(mode.root.real, 9)))
+    return tuple(found)
+
+
+def _of_part(system: LinearSpin, keep: list[int]) -> list[Mode]:
+    part = system.part(keep)
+    m, c, k = part.M, part.G + part.D, part.K + part.K_springs
     n = len(m)
     inverse = np.linalg.inv(m)
     first_order = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ k, -inverse @ c]])
     values, vectors = np.linalg.eig(first_order)
     found: list[Mode] = []
-    drift = _drift(system)
+    drift = _drift(part)
     if drift is not None:
         found.append(drift)
     # The drift is a double zero, which rounding splits into a tiny pair: the two nearest zero.
@@ -52,9 +62,15 @@ def modes(system: LinearSpin) -> tuple[Mode, ...]:
         shape = vectors[:n, i]
         shape = shape / shape[np.argmax(np.abs(shape))]
         energy = _energy(m, k, shape, root)
-        found.append(Mode(_name(system, shape, root), complex(root), shape, energy))
-    found.sort(key=lambda mode: (round(mode.root.imag, 9), round(mode.root.real, 9)))
-    return tuple(found)
+        found.append(Mode(_name(part, shape, root), complex(root), shape, energy))
+    whole = np.zeros(len(system.M), complex)
+    return [replace(mode, shape=_embedded(mode.shape, keep, whole)) for mode in found]
+
+
+def _embedded(shape: Array, keep: list[int], whole: Array) -> Array:
+    result = whole.copy()
+    result[keep] = shape
+    return result
 
 
 def _drift(system: LinearSpin) -> Mode | None:

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import permutations
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
+import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from somersault.stability._linear import LinearSpin
 
 Axis = Literal["minor", "intermediate", "major", 1, 2, 3]
+_WORTH_COMPILING = 8  # samples
 _RANK = {"minor": 0, "intermediate": 1, "major": 2}
 
 
@@ -104,6 +106,8 @@ def spin(
     """
     model = load(model)
     require_free(model)
+    if pose is not None and not isinstance(pose, Mapping):
+        raise SomersaultError(f"a pose gives angles by name, {{'shoulder': 1.3}}, and is {pose!r}")
     q = posed(model, pose)
     if q.ndim != 1:
         raise SomersaultError("a spin has one pose; use stability.chart for several")
@@ -212,7 +216,7 @@ def axis_index(about: Principal, axis: Axis | str | int) -> int:
     """Index 0, 1, 2 of the principal axis meant."""
     if str(axis) in ("1", "2", "3"):
         return int(axis) - 1
-    if axis in _RANK:
+    if str(axis) in _RANK:
         return int(np.argsort(about.inertias)[_RANK[str(axis)]])
     raise SomersaultError(
         f"{axis!r} is no axis to spin about; use minor, intermediate, major, 1, 2 or 3"
@@ -244,6 +248,23 @@ def _equations(model: Model, parameters: tuple[str, ...]) -> Equations:
 
 
 @lru_cache(maxsize=16)
+def _function(model: Model, parameters: tuple[str, ...]) -> Any:
+    """Spin matrices for one sample as CasADi evaluates them: nothing to compile."""
+    expression = spin_matrices(_equations(model, parameters))
+    joined = ca.vertcat(*expression.arguments.values())
+    return ca.Function("spin_matrices", [joined], [ca.densify(ca.vec(expression.value.T))])
+
+
+def _rows(model: Model, parameters: tuple[str, ...], x: Array) -> Array:
+    """Raveled spin matrices of samples x (…, inputs): compiled where that pays."""
+    flat = x.reshape(-1, x.shape[-1])
+    if len(flat) > _WORTH_COMPILING:
+        return _kernel(model, parameters)(x)
+    function = _function(model, parameters)
+    return np.stack([np.asarray(function(row)).ravel() for row in flat])
+
+
+@lru_cache(maxsize=16)
 def _kernel(model: Model, parameters: tuple[str, ...]) -> Kernel:
     equations = _equations(model, parameters)
     return equations.kernel(spin_matrices(equations))
@@ -268,7 +289,7 @@ def evaluated(
     lead = np.broadcast_shapes(q.shape[:-1], axis.shape[:-1], values.shape[:-1])
     parts = [np.broadcast_to(x, (*lead, x.shape[-1])) for x in (q, axis, values)]
     size = 3 + len(model.speeds)
-    rows = _kernel(model, parameters)(np.concatenate(parts, -1))
+    rows = _rows(model, parameters, np.concatenate(parts, -1))
     rows = rows.reshape(*lead, size, 3 * size + 2)
     return Evaluated(
         rows[..., :size],

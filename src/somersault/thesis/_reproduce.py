@@ -6,6 +6,7 @@ import io
 import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from somersault._errors import SomersaultError
@@ -27,31 +28,49 @@ def reproduce(
     """Regenerate what the thesis shows and check what it says.
 
     `ids` are chapters ("ch4") or entries ("fig4-9", "table4-3"); none means everything. Writes
-    figures/ID.svg and .png, claims.json and index.html into `out`, each whole or not at all.
+    figures/ID.svg and .png, claims.json and index.html into `out`, all at the end or none.
     Raises SomersaultError for an ID that is not there or a place that cannot be written to.
     """
     chosen = select(ids, entries)
     out = Path(out)
-    sections: list[Section] = []
-    claims: list[Claim] = []
     try:
-        for entry in _watched(chosen, progress):
-            with _style.style():
-                result = entry.make()
-                if result.figure is not None:
-                    _save(result.figure, out / "figures" / entry.id)
-            claims += result.claims
-            sections.append(_section(entry, result))
-        records = [claim.record() for claim in claims]
-        write(out / "claims.json", json.dumps(records, indent=1, ensure_ascii=False) + "\n")
-        errata = [(e.where, e.printed, e.correct, e.why) for e in ERRATA]
-        write(out / "index.html", page(sections, errata))
+        out.mkdir(parents=True, exist_ok=True)
+        with TemporaryDirectory(prefix=".making-", dir=out) as made:
+            claims = _made(chosen, Path(made), progress)
+            _published(Path(made), out)
     except OSError as error:
         raise SomersaultError(
             f"the report cannot be written to {out}: {error.strerror or error}; choose another "
             "directory"
         ) from error
     return claims
+
+
+def _made(chosen: Sequence[Entry], folder: Path, progress: bool) -> list[Claim]:
+    """Everything, in a folder that nobody sees before it is whole."""
+    sections: list[Section] = []
+    claims: list[Claim] = []
+    for entry in _watched(chosen, progress):
+        with _style.style():
+            result = entry.make()
+            if result.figure is not None:
+                _save(result.figure, folder / "figures" / entry.id)
+        claims += result.claims
+        sections.append(_section(entry, result))
+    records = [claim.record() for claim in claims]
+    write(folder / "claims.json", json.dumps(records, indent=1, ensure_ascii=False) + "\n")
+    errata = [(e.where, e.printed, e.correct, e.why) for e in ERRATA]
+    write(folder / "index.html", page(sections, errata))
+    return claims
+
+
+def _published(made: Path, out: Path) -> None:
+    """Rename every finished file into place, pictures before the page that shows them."""
+    for file in sorted(made.rglob("*"), key=lambda f: (f.parent == made, f.name)):
+        if file.is_file():
+            target = out / file.relative_to(made)
+            target.parent.mkdir(exist_ok=True)
+            file.replace(target)
 
 
 def _watched(entries: Sequence[Entry], progress: bool) -> Iterable[Entry]:

@@ -212,9 +212,8 @@ def _draw_2_8() -> Figure:
     ):
         ax.plot(*(arc @ seen[:2].T).T, color=color, lw=2.4)
     ax.plot([0, foot[0]], [0, foot[1]], color=look.GREY, lw=0.8, ls="--")
-    ax.annotate(
-        "", (float(spot[0]), float(spot[1])), (0, 0), arrowprops={"arrowstyle": "-|>", "lw": 2, "color": look.BLACK}
-    )
+    arrow = {"arrowstyle": "-|>", "lw": 2, "color": look.BLACK}
+    ax.annotate("", (float(spot[0]), float(spot[1])), (0, 0), arrowprops=arrow)
     look.label(ax, spot[0] - 0.05, spot[1] + 0.12, "h", fontsize=12, ha="right")
     half = seen @ rigid.momentum_direction(0.0, 0.5 * twist)
     look.label(

@@ -24,7 +24,7 @@ def stability_chart(chart: xr.Dataset) -> Figure:
         axes.set(xlabel=_axis(chart, x_name), ylabel=_axis(chart, y_name))
         axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
         whole = "" if chart.attrs["subsystem"] == "all" else f", part of {chart.attrs['subsystem']}"
-        axes.set_title(f"{chart.attrs['model']} about axis {chart.attrs['axis']}{whole}")
+        axes.set_title(f"Spins of {chart.attrs['model']} about axis {chart.attrs['axis']}{whole}")
         _region(axes, x, y, chart.stable.values, BLUE, "stable")
         if "definite" in chart:
             _region(axes, x, y, chart.definite.values, GREEN, "definite: survives damping")
@@ -55,10 +55,11 @@ def root_loci(found: xr.Dataset) -> Figure:
         dots = locus(axes, values, roots)
         stroboscopic(axes)
         picture.colorbar(dots, label=_axis(found, name), shrink=0.7)
-        axes.set_title(f"{found.attrs['model']} about axis {found.attrs['axis']}")
+        axes.set_title(f"Roots of {found.attrs['model']} about axis {found.attrs['axis']}")
         picture.draw_without_rendering()
     return picture
 
 
 def _axis(data: xr.Dataset, name: str) -> str:
-    return f"{name.replace('.', ' ').replace('_', ' ')} ({data[name].attrs['units']})"
+    kind, _, rest = name.partition(".")
+    return f"{kind} of {rest.replace('_', ' ')} ({data[name].attrs['units']})"

@@ -55,7 +55,8 @@ table { border-collapse: collapse; margin: .8rem 0; font-size: .88rem; width: 10
 th, td { padding: .3rem .6rem; text-align: left; vertical-align: top;
   border-bottom: 1px solid var(--line); overflow-wrap: anywhere; }
 th { background: var(--soft); }
-td.id { font-family: ui-monospace, monospace; font-size: .8rem; color: var(--quiet); }
+td.id { white-space: nowrap;
+  font-family: ui-monospace, monospace; font-size: .8rem; color: var(--quiet); }
 td.n { font-variant-numeric: tabular-nums; min-width: 5.2rem; }
 th { white-space: nowrap; }
 .yes { color: var(--good); font-weight: 700; white-space: nowrap; }
