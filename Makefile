@@ -28,6 +28,7 @@ check: $(VENV)/.test
 bench: $(VENV)/.test
 	$(BIN)/python benchmarks/forward_dynamics.py
 	$(BIN)/python benchmarks/stability_chart.py
+	$(BIN)/python benchmarks/flights.py
 
 docs: $(VENV)/.docs
 	$(BIN)/mkdocs build --strict --quiet

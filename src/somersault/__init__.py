@@ -18,7 +18,15 @@ if TYPE_CHECKING:
     from somersault import stability
     from somersault._errors import SomersaultError, SomersaultWarning
     from somersault.dynamics import Equations
-    from somersault.flight import Flight, JointTakeoff, Landing, Takeoff, deviated_flight, fly
+    from somersault.flight import (
+        Flight,
+        JointTakeoff,
+        Landing,
+        Takeoff,
+        deviated_flight,
+        fly,
+        landings,
+    )
     from somersault.model import Body, Joint, Model, load, shipped
     from somersault.stability import LinearSpin, Mode, Spin, spin
 
@@ -39,6 +47,7 @@ _HOME = {
     "Takeoff": "somersault.flight",
     "deviated_flight": "somersault.flight",
     "fly": "somersault.flight",
+    "landings": "somersault.flight",
     "LinearSpin": "somersault.stability",
     "Mode": "somersault.stability",
     "Spin": "somersault.stability",
@@ -61,6 +70,7 @@ __all__ = [
     "Takeoff",
     "deviated_flight",
     "fly",
+    "landings",
     "load",
     "shipped",
     "spin",

@@ -28,6 +28,12 @@ A SPEC:
   stiffness = 34.48             # N m/rad
   hold = true                   # pretensioned to balance the nominal spin"""
 
+_BROKEN = {
+    "too many steps": "it would take more than a million steps; it is too long for its accuracy, "
+    "or a spring or damper is too stiff",
+    "not finite": "its motion is no longer finite; a spring, damper or move is too stiff or fast",
+}
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
@@ -40,10 +46,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> None:
     """Fly, write the history, print how it ended."""
+    from somersault._errors import SomersaultError
     from somersault.flight import fly, read_spec
+    from somersault.flight._save import check_ending
 
+    if chosen.out is not None:
+        check_ending(chosen.out)
     spec = read_spec(chosen.spec)
     flight = fly(spec.model, spec.takeoff, spec.duration, **spec.options)
+    if flight.ended in _BROKEN:
+        raise SomersaultError(
+            f"the flight broke off at {flight.landing.time:g} s: {_BROKEN[flight.ended]}"
+        )
     if chosen.out is not None:
         flight.save(chosen.out)
     if chosen.json:

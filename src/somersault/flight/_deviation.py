@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 
 from somersault._array import Array
+from somersault._errors import SomersaultError
 from somersault.attitude import quaternion_from_matrix, quaternion_product
 from somersault.flight._flight import Flight
 from somersault.flight._fly import fly
+from somersault.flight._numbers import number
 from somersault.flight._takeoff import JointTakeoff, Takeoff
 from somersault.model import Joint
 from somersault.model._pose import pose, spread
@@ -41,6 +43,11 @@ def deviated_flight(
     those of `fly`.
     """
     model = spin.model
+    rate = number("rate", rate)
+    if rate == 0:
+        raise SomersaultError("rate 0 is no spin to deviate from; give one in rad/s")
+    turns = {"tilt": tilt, "somersault": somersault, "twist": twist}
+    deviation = np.array([number(name, turn) for name, turn in turns.items()])
     springs = spread(model, stiffness or {}, mirrored=False)
     dampers = spread(model, damping or {}, mirrored=False)
     locked = set(model.speeds) if "all" in set(lock) else set(
@@ -55,7 +62,7 @@ def deviated_flight(
     }
     momentum = rate * float(spin.principal_inertias[spin.axis - 1])
     takeoff = Takeoff(
-        quaternion=_attitude(spin, np.array([tilt, somersault, twist])).tolist(),
+        quaternion=_attitude(spin, deviation).tolist(),
         angular_momentum=(0.0, momentum, 0.0),
         joints=setups,
     )

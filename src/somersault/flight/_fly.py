@@ -23,8 +23,9 @@ Event = Literal["quarter twist"]
 TOLERANCE_PER_ACCURACY = 1 / 20  # measured: eight somersaults add up about ten step errors
 _FINEST_TURN = 0.6  # rad between the points that turns are counted on
 _MOST_POINTS = 5_000_000
-_MOST_REFINEMENTS = 4
-_CLOSEST = 0.02  # cos Θ: a path nearer the singularity than this is taken to go through
+_MOST_REFINEMENTS = 24
+_MOST_PARTS = 16  # of a gap at once
+_CLOSEST = 1e-6  # cos Θ: a path nearer the singularity than this is taken to go through
 
 
 def fly(
@@ -47,7 +48,9 @@ def fly(
     inertial axis 2), found to rounding. Raises SomersaultError for anything that does not fit.
     """
     model = load(model)
-    takeoff = takeoff or Takeoff()
+    takeoff = Takeoff() if takeoff is None else takeoff
+    if not isinstance(takeoff, Takeoff):
+        raise SomersaultError(f"a takeoff is a somersault.Takeoff, and not {takeoff!r}")
     duration = number("duration", duration)
     times = _times(duration, samples)
     g = numbers("gravity", gravity, 3)
@@ -88,61 +91,57 @@ def _flown(
     """Solve on points that are close enough to count turns on, if need be again on closer ones."""
     parameters = chosen.parameter_vector(begun.plans)
     first = chosen.start(begun.quaternion, begun.omega, begun.q, begun.u)
-    points = np.union1d(times, [0.0, duration])
-    parts = _first_parts(chosen, begun, points)
+    points = _first_points(chosen, begun, np.union1d(times, [0.0, duration]))
     for _ in range(_MOST_REFINEMENTS):
-        fine, index = _divided(points, parts)
         solution = chosen.integrator.solve(
-            first[None], parameters[None], fine, accuracy * TOLERANCE_PER_ACCURACY
+            first[None], parameters[None], points, accuracy * TOLERANCE_PER_ACCURACY
         )
-        end = float(solution.end[0])
-        flown = fine < end
+        end, status = float(solution.end[0]), float(solution.status[0])
+        flown = points < end
         states = np.concatenate([solution.states[0][flown], solution.final])
-        needed = _needed(states, fine[flown], index, len(points))
-        if np.all(needed <= 1) or parts.sum() > _MOST_POINTS:
+        moments = np.append(points[flown], end)
+        parts = _needed(states)
+        if np.all(parts <= 1) or len(points) + parts.sum() > _MOST_POINTS:
             break
-        parts = np.minimum(parts * needed, _MOST_POINTS // len(points) + 1)
-    kept = np.isin(fine[flown], times)
-    status = float(solution.status[0])
+        points = np.union1d(_divided(moments, parts), points)
+    kept = np.isin(points[flown], times)
     # The end is kept where it was asked for, and where something cut the flight short.
     keep = np.append(kept, status != 0 or times[-1] == duration)
     return Flight(
-        chosen, begun, np.asarray(takeoff.velocity, float), gravity, np.append(fine[flown], end),
-        states, keep, parameters, STATUS[status], int(solution.steps[0]),
+        chosen, begun, np.asarray(takeoff.velocity, float), gravity, moments, states, keep,
+        parameters, STATUS[status], int(solution.steps[0]),
     )  # fmt: skip
 
 
-def _first_parts(chosen: System, begun: Start, points: Array) -> Array:
-    """Into how many parts each gap must be divided, by how fast the body turns at takeoff."""
+def _first_points(chosen: System, begun: Start, points: Array) -> Array:
+    """The points with more between them where the body turns far, by its rate at takeoff."""
     least = np.linalg.eigvalsh(chosen.equations.inertia(begun.q))[0]
     fastest = np.linalg.norm(begun.momentum) / least + np.abs(begun.u).sum()
-    gaps = np.diff(points, prepend=0.0)
-    parts = np.ceil(gaps * fastest / _FINEST_TURN)
-    return np.clip(parts, 1, _MOST_POINTS // len(points) + 1).astype(int)
+    parts = np.ceil(np.diff(points) * fastest / _FINEST_TURN)
+    return np.append(
+        _divided(points, np.clip(parts, 1, _MOST_POINTS // len(points)).astype(int)), points[-1]
+    )
 
 
-def _divided(points: Array, parts: Array) -> tuple[Array, Array]:
-    """Points with each gap before one divided evenly, and which gap each belongs to."""
-    index = np.repeat(np.arange(len(points)), parts)
-    last = np.cumsum(parts) - 1
-    within = (np.arange(len(index)) - np.repeat(last - parts, parts)) / np.repeat(parts, parts)
-    gaps = np.diff(points, prepend=0.0)
-    fine = points[index] - gaps[index] * (1 - within)
-    fine[last] = points
-    return fine, index
+def _divided(points: Array, parts: Array) -> Array:
+    """The points but the last, each gap after one divided evenly into so many parts."""
+    start = np.cumsum(parts) - parts
+    within = (np.arange(parts.sum()) - np.repeat(start, parts)) / np.repeat(parts, parts)
+    return np.repeat(points[:-1], parts) + np.repeat(np.diff(points), parts) * within
 
 
-def _needed(states: Array, times: Array, index: Array, gaps: int) -> Array:
-    """By how much each gap must be divided further for its turns to be counted rightly.
+def _needed(states: Array) -> Array:
+    """Into how many parts each gap must be divided for its turns to be counted rightly.
 
-    Near tilt ±π/2 somersault and twist run as fast as the body turns over cos Θ.
+    Near tilt ±π/2 somersault and twist run as fast as the body turns over cos Θ, so it must
+    turn by less than half of cos Θ from point to point: then no pole lies between.
     """
     q = states[:, :4] / np.linalg.norm(states[:, :4], axis=1, keepdims=True)
-    cosine = np.abs(np.einsum("tk,tk->t", q[1:], q[:-1]))
-    turn = 2 * np.arccos(np.minimum(cosine, 1.0))
-    tilt = angles_from_quaternion(q)[:, 1]
-    upright = np.cos(tilt)
-    worst = turn / np.maximum(np.minimum(upright[1:], upright[:-1]), _CLOSEST)
-    needed = np.ones(gaps, int)
-    np.maximum.at(needed, index[1 : len(turn) + 1], np.ceil(worst[: len(index) - 1]).astype(int))
-    return needed
+    # The distance of unit quaternions keeps its digits where their product would not.
+    apart = np.minimum(
+        np.linalg.norm(q[1:] - q[:-1], axis=1), np.linalg.norm(q[1:] + q[:-1], axis=1)
+    )
+    turn = 4 * np.arcsin(np.minimum(apart / 2, 1.0))
+    upright = np.abs(np.cos(angles_from_quaternion(q)[:, 1]))
+    near = np.maximum(np.minimum(upright[1:], upright[:-1]), _CLOSEST)
+    return np.clip(np.ceil(2 * turn / near), 1, _MOST_PARTS).astype(int)

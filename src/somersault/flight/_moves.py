@@ -16,6 +16,8 @@ import numpy as np
 from somersault._array import Array
 from somersault._errors import SomersaultError
 
+_SHORTEST = 1e-6  # s
+
 
 def path(t: Any, times: Sequence[Any], values: Sequence[Any]) -> tuple[Any, Any, Any]:
     """Value, rate and acceleration at time t of the moves through (times, values), symbolic."""
@@ -43,5 +45,5 @@ def check(times: Array, values: Array) -> None:
         raise SomersaultError("needs as many times as angles, at least one of each")
     if not (np.all(np.isfinite(times)) and np.all(np.isfinite(values))):
         raise SomersaultError("has times or angles that are not finite")
-    if np.any(np.diff(times) <= 0):
-        raise SomersaultError("has times that do not increase")
+    if np.any(np.diff(times) < _SHORTEST):
+        raise SomersaultError("has times that do not increase, by a microsecond at least")

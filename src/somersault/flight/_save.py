@@ -16,11 +16,13 @@ if TYPE_CHECKING:
 
 def save(flight: Flight, path: Path) -> None:
     """Write NetCDF or CSV by the file's ending, whole or not at all."""
-    if path.suffix == ".csv":
-        write(path, csv(flight))
-    elif path.suffix == ".nc":
-        write(path, _netcdf(flight))
-    else:
+    check_ending(path)
+    write(path, csv(flight) if path.suffix.lower() == ".csv" else _netcdf(flight))
+
+
+def check_ending(path: Path) -> None:
+    """SomersaultError unless flights can be written to a file of that name."""
+    if path.suffix.lower() not in (".csv", ".nc"):
         raise SomersaultError(f"{path.name}: flights are written as .nc (NetCDF) or .csv")
 
 

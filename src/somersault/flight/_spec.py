@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from somersault._errors import SomersaultError
+from somersault.flight._numbers import number
 from somersault.flight._takeoff import JointTakeoff, Takeoff
 
 _MOST_BYTES = 10 * 2**20
@@ -55,7 +56,7 @@ def read_spec(path: Path) -> FlightSpec:
     if path.stat().st_size > _MOST_BYTES:
         raise SomersaultError(f"{path.name} is larger than 10 MB, which no SPEC is; check the file")
     try:
-        given = tomllib.loads(path.read_text(encoding="utf-8"))
+        given = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise SomersaultError(f"{path.name} is not TOML: {error}; correct the file") from None
     return parse_spec(given, path.parent)
@@ -79,11 +80,11 @@ def parse_spec(given: Mapping[str, Any], beside: Path) -> FlightSpec:
         samples = int(samples)
     return FlightSpec(
         _model(given["model"], beside),
-        float(given.get("duration", 1.0)),
+        number("duration", given.get("duration", 1.0)),
         Takeoff(**takeoff, joints={name: JointTakeoff(**joint) for name, joint in joints.items()}),
         {
             "gravity": given.get("gravity", (0.0, 0.0, 0.0)),
-            "accuracy": float(given.get("accuracy", 1e-9)),
+            "accuracy": number("accuracy", given.get("accuracy", 1e-9)),
             "samples": samples,
             "until": given.get("until"),
         },

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
 from somersault._errors import SomersaultError
 from somersault.flight._moves import extremes, path
-from somersault.flight._numbers import number, numbers
+from somersault.flight._numbers import MOST, number, numbers
 from somersault.model import Joint, Model
+from somersault.model._mirror import mirror_pairs
 
 Motion = Literal["locked", "free", "sprung", "prescribed"]
 
@@ -60,6 +61,9 @@ class Takeoff:
     joints: Mapping[str, JointTakeoff] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        for name, joint in self.joints.items():
+            if not isinstance(joint, JointTakeoff):
+                raise SomersaultError(f"takeoff of joint {name} is {joint!r}, not a JointTakeoff")
         for name in ("somersault", "tilt", "twist"):
             number(f"takeoff {name}", getattr(self, name))
         for name, size in (
@@ -69,7 +73,8 @@ class Takeoff:
             ("velocity", 3),
         ):
             if getattr(self, name) is not None or name == "velocity":
-                numbers(f"takeoff {name}", getattr(self, name), size)
+                most = np.inf if name == "quaternion" else MOST  # of any length
+                numbers(f"takeoff {name}", getattr(self, name), size, most)
         given = [
             name
             for name in ("spin", "angular_velocity", "angular_momentum")
@@ -104,10 +109,42 @@ class JointPlan:
 
 
 def plans(model: Model, joints: Mapping[str, JointTakeoff]) -> tuple[JointPlan, ...]:
-    """One plan a joint, in the model's order; SomersaultError for what does not fit."""
-    for name in joints:
-        model.joint(name)
-    return tuple(_plan(joint, joints.get(joint.name, JointTakeoff())) for joint in model.joints)
+    """One plan a joint, in the model's order; SomersaultError for what does not fit.
+
+    A left–right pair may be named once, by its common name; the right side is mirrored.
+    """
+    given = _by_joint(model, joints)
+    return tuple(_plan(joint, given.get(joint.name, JointTakeoff())) for joint in model.joints)
+
+
+def _by_joint(model: Model, joints: Mapping[str, JointTakeoff]) -> dict[str, JointTakeoff]:
+    pairs = {pair.name: pair for pair in mirror_pairs(model) if pair.left != pair.right}
+    given: dict[str, JointTakeoff] = {}
+    for name, takeoff in joints.items():
+        both = {name: takeoff}
+        if name in pairs and name not in model.speeds:
+            left, right = (model.speeds[k] for k in (pairs[name].left, pairs[name].right))
+            mirrored = _mirrored(takeoff, model.joint(left), model.joint(right), pairs[name].sign)
+            both = {left: takeoff, right: mirrored}
+        for joint in both:
+            model.joint(joint)
+            if joint in given:
+                raise SomersaultError(f"joint {joint} is given twice, alone and with its pair")
+        given |= both
+    return given
+
+
+def _mirrored(takeoff: JointTakeoff, left: Joint, right: Joint, sign: int) -> JointTakeoff:
+    def image(angle: float | None) -> float | None:
+        return None if angle is None else right.reference + sign * (angle - left.reference)
+
+    return replace(
+        takeoff,
+        angle=image(takeoff.angle),
+        rate=sign * takeoff.rate,
+        rest=image(takeoff.rest),
+        angles=tuple(right.reference + sign * (a - left.reference) for a in takeoff.angles),
+    )
 
 
 def _plan(joint: Joint, given: JointTakeoff) -> JointPlan:

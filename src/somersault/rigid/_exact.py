@@ -19,6 +19,7 @@ from somersault.rigid._precession import Precession
 from somersault.rigid._quadrature import period_and_somersault
 
 _ALONG = 1e-14  # sine of the angle to inertial axis 2 below which h counts as lying along it
+_MOST_SAMPLES = 2_000_000
 _STEP = 0.02  # rad of turning between samples where turns are counted along the path
 
 
@@ -226,6 +227,11 @@ class RigidMotion:
         """Angles at times (…), with turns counted along samples close to each other from t = 0."""
         flat = times.reshape(-1)
         fastest = float(np.linalg.norm(self.momentum) / self.inertias.min())
+        if np.abs(flat).max(initial=0.0) * fastest / _STEP > _MOST_SAMPLES:
+            raise SomersaultError(
+                f"Turns are counted up to {_MOST_SAMPLES * _STEP / fastest:.0f} s for this body; "
+                "later, use quaternion(t), or lay the momentum along inertial axis 2."
+            )
         found = np.empty((flat.size, 3))
         for side in (flat >= 0, flat < 0):
             if not side.any():

@@ -154,14 +154,13 @@ def _claims_4_5(angles: Array, k1: Array, k3: Array) -> list[Claim]:
             f"{turn / (2 * np.pi):.3f} somersaults",
             turn < np.pi,
         ),
-        number(
+        statement(
             "fig4-5.rate",
             "eq. 2.13",
-            "growth rate with the arms locked, against √(−k1 k3)",
-            float(np.sqrt(product)),
-            rate,
-            "Ω",
-            1e-9,
+            "growth rate with the arms locked",
+            "√(−k1 k3)",
+            f"{rate:.9f} Ω, √(−k1 k3) = {np.sqrt(product):.9f}",
+            abs(rate - float(np.sqrt(product))) < 1e-9,
             "Closed form against the root of the linearised model with locked arms.",
         ),
         statement(
