@@ -248,6 +248,36 @@ def test_what_a_ball_has_not(given: dict) -> None:
     refused("neck", model=with_ball(), joints={"neck": JointTakeoff(**given)}, spin=2.0)
 
 
+def test_a_ball_takes_off_turned_and_turning() -> None:
+    """The head turned about its neck is another trunk attitude with the neck turned back."""
+    turn, rate = np.array([0.3, -0.5, 0.2]), np.array([1.0, 0.4, -2.0])
+    neck = JointTakeoff("sprung", angle=turn, rate=rate, stiffness=3.0)
+    omega = np.array([0.5, 2.0, 0.3])
+    begun = Takeoff(angular_velocity=omega, joints={"neck": neck})
+    flight = fly(with_ball(), begun, 1.0, accuracy=1e-11)
+    first = flight.dataset.isel(time=0)
+    half = np.linalg.norm(turn) / 2
+    wanted = [np.cos(half), *(np.sin(half) * turn / (2 * half))]
+    np.testing.assert_allclose(first["joint_angle"], wanted, atol=1e-12)
+    np.testing.assert_allclose(first["joint_rate"], rate, atol=1e-12)
+    assert float(first["spring_energy"]) == pytest.approx(0.5 * 3.0 * turn @ turn)
+    assert flight.momentum_drift < 1e-11
+    assert flight.energy_drift is not None
+    assert flight.energy_drift < 1e-10
+    # The two bodies' own momenta about the common centre, by hand, are the flight's.
+    turned = matrix_from_quaternion(wanted)
+    trunk, head = with_ball().bodies
+    arm = np.add(head.position, [0, 0, -0.1]) + turned @ [0, 0, 0.2]
+    spin_of_head = omega + turned @ rate
+    apart = np.cross(omega, np.add(head.position, [0, 0, -0.1])) + np.cross(
+        spin_of_head, turned @ [0, 0, 0.2]
+    )
+    reduced = trunk.mass * head.mass / (trunk.mass + head.mass)
+    by_hand = np.array(trunk.inertia) @ omega + reduced * np.cross(arm, apart)
+    by_hand += turned @ np.array(head.inertia) @ turned.T @ spin_of_head
+    np.testing.assert_allclose(first["angular_momentum"], by_hand, atol=1e-12)
+
+
 # ------------------------------------------------------------------- left to the model
 
 
@@ -268,7 +298,7 @@ def test_what_is_not_named_keeps_what_the_model_gives() -> None:
     spring, held = plan(flight, "left_shoulder"), plan(flight, "right_shoulder")
     assert (spring.motion, spring.position) == ("sprung", (0.2,))
     assert (spring.stiffness, spring.rest, spring.damping) == (7.0, 0.4, 0.3)
-    assert (held.motion, held.position, held.rate) == ("locked", (0.0,), 0.0)
+    assert (held.motion, held.position, held.rate) == ("locked", (0.0,), (0.0,))
     angles = flight.dataset["joint_angle"].values
     assert np.ptp(angles[:, 0]) > 1e-3
     assert np.ptp(angles[:, 1]) == 0.0

@@ -20,6 +20,7 @@ _NUMBER, _NUMBERS, _TEXT, _YES, _TABLE = (
     "true or false",
     "a table",
 )
+_EITHER = "a number, or three for a ball"
 
 _TOP = {
     "model": _TEXT, "duration": _NUMBER, "gravity": _NUMBERS, "accuracy": _NUMBER,
@@ -31,7 +32,7 @@ _TAKEOFF = {
     "velocity": _NUMBERS,
 }  # fmt: skip
 _JOINT = {
-    "motion": _TEXT, "angle": _NUMBER, "rate": _NUMBER, "stiffness": _NUMBER,
+    "motion": _TEXT, "angle": _EITHER, "rate": _EITHER, "stiffness": _NUMBER,
     "damping": _NUMBER, "rest": _NUMBER, "hold": _YES, "times": _NUMBERS, "angles": _NUMBERS,
 }  # fmt: skip
 
@@ -114,6 +115,8 @@ def _fits(value: Any, kind: str) -> bool:
         return isinstance(value, bool)
     if kind == _TABLE:
         return isinstance(value, Mapping)
+    if kind == _EITHER:
+        return _fits(value, _NUMBER) or _fits(value, _NUMBERS)
     if kind == _NUMBERS:
         return isinstance(value, list) and all(_fits(item, _NUMBER) for item in value)
     return isinstance(value, int | float) and not isinstance(value, bool)

@@ -37,7 +37,7 @@ def start(system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...]) -> Sta
     quaternion = _quaternion(takeoff)
     to_inertial = matrix_from_quaternion(quaternion)
     q = np.array([x for plan in plans for x in plan.position])
-    u = np.array([x for plan in plans for x in _rates(plan)])
+    u = np.array([x for plan in plans for x in plan.rate])
     if takeoff.angular_velocity is not None:
         omega = np.asarray(takeoff.angular_velocity, float)
     elif takeoff.angular_momentum is not None:
@@ -63,10 +63,6 @@ def _quaternion(takeoff: Takeoff) -> Array:
     return quaternion_from_angles(takeoff.somersault, takeoff.tilt, takeoff.twist)
 
 
-def _rates(plan: JointPlan) -> list[float]:
-    return [0.0, 0.0, 0.0] if plan.joint.kind == "ball" else [plan.rate]
-
-
 def _speeds(omega: Array, u: Array) -> Array:
     return np.concatenate([omega, np.zeros(3), u])
 
@@ -79,7 +75,7 @@ def _pretensioned(
     That is the steady spin of the takeoff pose about its principal axis nearest 2, at the rate
     asked for, or else at the one that has this angular momentum.
     """
-    angles = {p.joint.name: p.position[0] for p in plans if p.joint.kind != "ball"}
+    angles = {name: angle for plan in plans for name, angle in _angles(plan).items()}
     nominal = spin(model, 2, angles)
     rate = takeoff.spin or float(np.linalg.norm(momentum)) / nominal.principal_inertias[1]
     if rate == 0:
@@ -89,3 +85,14 @@ def _pretensioned(
         replace(p, pretension=nominal.holding_torques[p.joint.name] * rate**2) if p.hold else p
         for p in plans
     )
+
+
+def _angles(plan: JointPlan) -> dict[str, float]:
+    """A joint's takeoff pose by the names that `spin` takes."""
+    name = plan.joint.name
+    if plan.joint.kind != "ball":
+        return {name: plan.position[0]}
+    w, *vector = plan.position
+    length = float(np.linalg.norm(vector))
+    ratio = 2.0 if length == 0 else 2 * float(np.arctan2(length, w)) / length
+    return {f"{name}.{k + 1}": ratio * x for k, x in enumerate(vector)}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -24,13 +24,14 @@ class JointTakeoff:
     "locked" holds its angle; "free" swings; "sprung" has stiffness (N m/rad), damping
     (N m s/rad) and a rest angle, or with `hold` is pretensioned so that at its takeoff angle
     it balances the nominal spin; "prescribed" moves smoothly through `angles` at `times` (s),
-    at rest at each. What is None comes from the model: sprung where it has stiffness or is
-    given some, else locked at the pose in which the file draws it.
+    at rest at each. A ball's `angle` is a rotation vector and its `rate` an angular velocity,
+    both along its body's axes. What is None comes from the model: sprung where it has stiffness
+    or is given some, else locked at the pose in which the file draws it.
     """
 
     motion: Motion | None = None
-    angle: float | None = None
-    rate: float = 0.0
+    angle: float | Sequence[float] | None = None
+    rate: float | Sequence[float] = 0.0
     stiffness: float | None = None
     damping: float | None = None
     rest: float | None = None
@@ -98,7 +99,7 @@ class JointPlan:
     joint: Joint
     motion: Motion
     position: tuple[float, ...]
-    rate: float
+    rate: tuple[float, ...]
     stiffness: float
     damping: float
     rest: float
@@ -135,41 +136,36 @@ def _by_joint(model: Model, joints: Mapping[str, JointTakeoff]) -> dict[str, Joi
 
 
 def _mirrored(takeoff: JointTakeoff, left: Joint, right: Joint, sign: int) -> JointTakeoff:
-    def image(angle: float | None) -> float | None:
-        return None if angle is None else right.reference + sign * (angle - left.reference)
+    def image(angle: Any) -> float | None:
+        if angle is None:
+            return None
+        return right.reference + sign * (number(f"joint {left.name}", angle) - left.reference)
 
     return replace(
         takeoff,
         angle=image(takeoff.angle),
-        rate=sign * takeoff.rate,
+        rate=sign * number(f"joint {left.name}: rate", takeoff.rate),
         rest=image(takeoff.rest),
-        angles=tuple(right.reference + sign * (a - left.reference) for a in takeoff.angles),
+        angles=[image(angle) or 0.0 for angle in takeoff.angles],
     )
 
 
 def _plan(joint: Joint, given: JointTakeoff) -> JointPlan:
     where = f"joint {joint.name}"
-    for name in ("angle", "rate", "stiffness", "damping", "rest"):
+    for name in ("stiffness", "damping", "rest"):
         if getattr(given, name) is not None:
             number(f"{where}: {name}", getattr(given, name))
     motion = _motion(joint, given, where)
-    if joint.kind == "ball" and (
-        given.angle is not None
-        or given.rate
-        or given.rest is not None
-        or given.hold
-        or motion == "prescribed"
-    ):
+    if joint.kind == "ball" and (given.rest is not None or given.hold or motion == "prescribed"):
         raise SomersaultError(
-            f"{where} is a ball: it can be locked, free or sprung from the pose it is drawn in"
+            f"{where} is a ball: it can be locked, free or sprung about the pose it is drawn in"
         )
     if motion == "prescribed":
         return _prescribed(joint, given, where)
     if len(given.times) or len(given.angles):
         raise SomersaultError(f"{where} has times or angles but is {motion}, not prescribed")
-    angle = joint.reference if given.angle is None else given.angle
-    _within(joint, angle, angle, where)
-    if motion == "locked" and (given.rate or given.damping):
+    position, rate = _position(joint, given, where)
+    if motion == "locked" and (any(rate) or given.damping):
         raise SomersaultError(f"{where} is locked; leave its rate and damping out")
     stiffness = damping = 0.0
     if motion == "sprung":
@@ -178,11 +174,26 @@ def _plan(joint: Joint, given: JointTakeoff) -> JointPlan:
         damping = joint.damping if given.damping is None else given.damping
     if given.hold and (motion != "sprung" or given.rest is not None):
         raise SomersaultError(f"{where}: hold is for a sprung joint without a rest of its own")
-    rest = angle if given.hold else joint.rest if given.rest is None else given.rest
-    position = joint.home if joint.kind == "ball" else (angle,)
+    rest = position[0] if given.hold else joint.rest if given.rest is None else given.rest
     return JointPlan(
-        joint, motion, position, given.rate, stiffness, damping, rest, 0.0, given.hold, (), ()
+        joint, motion, position, rate, stiffness, damping, rest, 0.0, given.hold, (), ()
     )
+
+
+def _position(
+    joint: Joint, given: JointTakeoff, where: str
+) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Coordinates and speeds of a joint at takeoff."""
+    if joint.kind == "ball":
+        turn = numbers(f"{where}: angle", (0, 0, 0) if given.angle is None else given.angle, 3)
+        still = isinstance(given.rate, float | int) and given.rate == 0
+        rate = numbers(f"{where}: rate", (0, 0, 0) if still else given.rate, 3)
+        half = np.linalg.norm(turn) / 2
+        vector = np.sinc(half / np.pi) / 2 * turn
+        return (float(np.cos(half)), *vector.tolist()), tuple(rate.tolist())
+    angle = joint.reference if given.angle is None else number(f"{where}: angle", given.angle)
+    _within(joint, angle, angle, where)
+    return (angle,), (number(f"{where}: rate", given.rate),)
 
 
 def _motion(joint: Joint, given: JointTakeoff, where: str) -> Motion:
@@ -215,7 +226,7 @@ def _prescribed(joint: Joint, given: JointTakeoff, where: str) -> JointPlan:
         raise SomersaultError(f"{where} is prescribed: its angle and rate come from its path")
     knots, held = tuple(times.tolist()), tuple(angles.tolist())
     angle, rate, _ = (float(x) for x in path(0.0, knots, held))
-    return JointPlan(joint, "prescribed", (angle,), rate, 0.0, 0.0, 0.0, 0.0, False, knots, held)
+    return JointPlan(joint, "prescribed", (angle,), (rate,), 0.0, 0.0, 0.0, 0.0, False, knots, held)
 
 
 def _within(joint: Joint, low: float, high: float, where: str) -> None:
