@@ -298,7 +298,10 @@ def _draw_2_4() -> Figure:
                 sign * x[x > product], -sign * product / x[x > product], color=look.BLUE, lw=1.2
             )
             middle = np.sqrt(product)
-            look.label(ax, sign * middle, -sign * middle, f"{angle:g}", look.BLUE, ha="center")
+            look.label(
+                ax, sign * middle, -sign * middle, f"{angle:g}", look.BLUE, ha="center",
+                bbox={"fc": "white", "ec": "none", "pad": 0.8},
+            )  # fmt: skip
     for x0, y0 in ((0.5, 0.5), (-0.5, -0.5)):
         look.label(ax, x0, y0, "stable:\nnothing grows", look.GREY, ha="center")
     ax.set_title("Somersault angle (rad) of a tenfold growth")
