@@ -113,7 +113,7 @@ def layout() -> Case:
             takeoff = Takeoff(tilt=0.01, spin=SPIN, joints=joints)
             planned = plans(model, joints)
             own = own or system(model, kinds(planned), None)
-            starts.append(start(own, takeoff, planned, nominal))
+            starts.append(start(own, takeoff, planned))
     return Case("layout", model, own, starts, TURNS * 2 * np.pi / SPIN, 0.2)
 
 
@@ -134,7 +134,7 @@ def gymnast_flights(count: int = 256) -> Case:
         takeoff = Takeoff(tilt=0.1, angular_velocity=omega, joints=joints)
         planned = plans(model, joints)
         own = own or system(model, kinds(planned), None)
-        starts.append(start(own, takeoff, planned, nominal))
+        starts.append(start(own, takeoff, planned))
     return Case("gymnast", model, own, starts, 1.5, np.pi)
 
 
@@ -165,7 +165,10 @@ class InMujoco:
         self.kind, self.models, rows = mujoco.mjtState.mjSTATE_FULLPHYSICS, [], []
         for start_ in (case.starts[k] for k in which):
             own, d = copy.copy(m), mujoco.MjData(m)
-            own.qpos_spring[q_at] = [plan.rest for plan in start_.plans]
+            own.qpos_spring[q_at] = [
+                plan.rest + (plan.pretension / plan.stiffness if plan.stiffness else 0.0)
+                for plan in start_.plans
+            ]
             for plan in start_.plans:
                 joint = own.joint(plan.joint.name)
                 own.jnt_stiffness[joint.id] = plan.stiffness
