@@ -264,10 +264,10 @@ def pinocchio_timer(case: Case, step: float) -> Callable[[], float] | None:
 
 
 def matching_tolerance(case: Case, accuracy: float) -> float:
-    """The loosest tolerance, by factors of √10, at which our attitudes are as accurate."""
+    """The loosest tolerance, by factors of 10^⅛, at which our attitudes are as accurate."""
     tolerance = accuracy * 10
     while case.error(case.solve(tolerance).final[case.calm, :4]) > accuracy:
-        tolerance /= 10**0.5
+        tolerance /= 10**0.125
     return tolerance
 
 

@@ -24,6 +24,8 @@ STATUS = {
 _MOST_STEPS = 1_000_000
 _FIRST_STEP = 1e-3  # s; what it is costs a step or two
 _BLOCKS_A_TASK = 4
+_STEPS_AT_A_TIME = 48
+_NO_LIMIT = 2**62
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,8 @@ class Integrator:
     @cached_property
     def _fly(self):
         p, i = ctypes.c_void_p, ctypes.c_int64
-        return ctypes.CFUNCTYPE(None, p, p, p, p, i, i)(self._engine.get_function_address("fly"))
+        address = self._engine.get_function_address("fly")
+        return ctypes.CFUNCTYPE(None, p, p, p, p, i, i, i)(address)
 
     @cached_property
     def _step(self):
@@ -97,10 +100,13 @@ class Integrator:
         if self._gauge is not None:
             control[:, _l.GAUGE] = self._gauges(x)
         samples = np.ascontiguousarray(samples, float)
-        out = aligned((len(x), len(samples), self.state, LANES))
-        self._run(x, control, samples, out)
-        states = np.moveaxis(out, -1, 1).reshape(-1, len(samples), self.state)[:count]
-        flat = _unpacked(control, count)
+        if len(samples) == 1:
+            whole, flat = self._to_the_end(x, control, samples, count)
+            states = whole[:, None, : self.state]
+        else:
+            out = self._run(x, control, samples, _NO_LIMIT)
+            states = np.moveaxis(out, -1, 1).reshape(-1, len(samples), self.state)[:count]
+            flat = _unpacked(control, count)
         final, times = states[:, -1].copy(), flat[:, _l.TIME].copy()
         held = np.flatnonzero(flat[:, _l.STATUS] == _l.EVENT)
         if held.size:
@@ -109,12 +115,35 @@ class Integrator:
             )
         return Solution(states, times, final, flat[:, _l.STATUS], flat[:, _l.STEPS].astype(int))
 
-    def _run(self, x: Array, control: Array, samples: Array, out: Array) -> None:
+    def _to_the_end(
+        self, x: Array, control: Array, samples: Array, count: int
+    ) -> tuple[Array, Array]:
+        """States (count, inputs) and controls (count, rows) at the end, a few steps at a time.
+
+        Lanes that have arrived leave, and the others close up, so that none waits for a slow
+        neighbour. What a lane computes does not depend on it.
+        """
+        whole, flat = _unpacked(x, count).copy(), _unpacked(control, count).copy()
+        left = np.arange(count)
+        while left.size:
+            self._run(x, control, samples, _STEPS_AT_A_TIME)
+            whole[left] = _unpacked(x, left.size)
+            flat[left] = _unpacked(control, left.size)
+            ends = np.minimum(flat[left, _l.END], samples[0])
+            on = (flat[left, _l.STATUS] == _l.FLYING) & (flat[left, _l.TIME] < ends)
+            left = left[on]
+            if left.size:
+                x, control = _packed(whole[left]), _packed(flat[left])
+        return whole, flat
+
+    def _run(self, x: Array, control: Array, samples: Array, most: int) -> Array:
+        out = aligned((len(x), len(samples), self.state, LANES))
+
         def part(bounds: tuple[int, int]) -> None:
             a, b = bounds
             self._fly(
                 x[a:b].ctypes.data, control[a:b].ctypes.data, samples.ctypes.data,
-                out[a:b].ctypes.data, len(samples), b - a,
+                out[a:b].ctypes.data, len(samples), b - a, most,
             )  # fmt: skip
 
         edges = [*range(0, len(x), _BLOCKS_A_TASK), len(x)]
@@ -122,6 +151,7 @@ class Integrator:
             part((0, len(x)))
         else:
             list(pool().map(part, pairwise(edges)))
+        return out
 
     def _gauges(self, x: Array) -> Array:
         assert self._gauge is not None

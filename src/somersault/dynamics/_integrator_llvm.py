@@ -93,10 +93,11 @@ def integrator_module(equations: str, state: int, inputs: int, event: bool) -> s
     `equations` defines @rhs(x, dy) and, with `event`, @gauge(x, g): x holds `inputs` rows, the
     `state` rows first, then the time, then parameters that stay.
 
-    fly(x, control, samples, out, count, blocks): carry each block of lanes to each of `count`
-    sample times in turn (a lane stops early at its own END, at a step in which the gauge
+    fly(x, control, samples, out, count, blocks, most): carry each block of lanes to each of
+    `count` sample times in turn (a lane stops early at its own END, at a step in which the gauge
     changes sign, or broken), and store the state rows: out[block][sample][row][lane]. In a
-    step that holds an event the lane stays at the step's beginning with STEP its length.
+    step that holds an event the lane stays at the step's beginning with STEP its length. After
+    `most` steps a block is left where it is; called again it goes on as if it had not been.
     step(x, control, y, blocks): one step of length STEP from x, into y[block][row][lane].
     """
     return "\n".join(
@@ -155,7 +156,9 @@ def _arrive(state: int, inputs: int, event: bool) -> str:
     left = t.two("fsub", end, time)
     flying = t.both(t.test("oeq", status, number(FLYING)), t.test("ogt", left, number(0.0)))
     any_flying = t.emit(f"bitcast {_MASK} {flying} to i{LANES}")
-    go = t.emit(f"icmp ne i{LANES} {any_flying}, 0")
+    needed = t.emit(f"icmp ne i{LANES} {any_flying}, 0")
+    allowed = t.emit("icmp slt i64 %taken, %most")
+    go = t.emit(f"and i1 {needed}, {allowed}")
     t.lines += [f"  br i1 {go}, label %advance, label %done", "advance:"]
     clipped = t.test("oge", step, left)
     taken = t.where(flying, t.where(clipped, left, step), number(0.0))
@@ -214,11 +217,13 @@ def _arrive(state: int, inputs: int, event: bool) -> str:
         t.store("%k", row, slope)
     body = "\n".join(t.lines)
     return f"""
-define void @arrive(ptr %x, ptr %c, ptr %k, ptr %z, ptr %g, {VECTOR} %until) #0 {{
+define void @arrive(ptr %x, ptr %c, ptr %k, ptr %z, ptr %g, {VECTOR} %until, i64 %most) #0 {{
 entry:
   br label %again
 again:
+  %taken = phi i64 [ 0, %entry ], [ %next, %advance ]
 {body}
+  %next = add i64 %taken, 1
   br label %again
 done:
   ret void
@@ -266,7 +271,7 @@ def _fly(state: int, inputs: int) -> str:
     keep = "\n".join(t.lines)
     splat = ", ".join([f"i32 {0}"] * LANES)
     return f"""
-define void @fly(ptr %xs, ptr %cs, ptr %samples, ptr %out, i64 %count, i64 %blocks) #0 {{
+define void @fly(ptr %xs, ptr %cs, ptr %samples, ptr %out, i64 %count, i64 %blocks, i64 %most) #0 {{
 entry:
 {_memory(state, inputs)}
   br label %block
@@ -290,7 +295,7 @@ carry:
   %ts = load double, ptr %tp
   %t1 = insertelement {VECTOR} poison, double %ts, i32 0
   %until = shufflevector {VECTOR} %t1, {VECTOR} poison, <{LANES} x i32> <{splat}>
-  call void @arrive(ptr %x, ptr %c, ptr %k, ptr %z, ptr %g, {VECTOR} %until)
+  call void @arrive(ptr %x, ptr %c, ptr %k, ptr %z, ptr %g, {VECTOR} %until, i64 %most)
   br label %store
 store:
   %ob = mul i64 %b, %count
