@@ -12,7 +12,7 @@ import numpy as np
 
 from somersault._array import Array
 from somersault.dynamics import _integrator_llvm as _l
-from somersault.dynamics._kernel import aligned, compiled, pool, threads
+from somersault.dynamics._kernel import aligned, compiled, packed, pool, threads, unpacked
 from somersault.dynamics._llvm import LANES, llvm_function
 
 STATUS = {
@@ -90,11 +90,11 @@ class Integrator:
         (N,) ends lanes before the last sample. An event is found to rounding.
         """
         count = len(start)
-        x = _packed(np.concatenate([start, np.zeros((count, 1)), parameters], 1))
+        x = packed(np.concatenate([start, np.zeros((count, 1)), parameters], 1))
         control = aligned((len(x), _l.CONTROL_ROWS, LANES))
         control[...] = 0.0
         control[:, _l.STEP] = _FIRST_STEP
-        control[:, _l.END] = np.inf if end is None else _packed(np.asarray(end)[:, None])[:, 0]
+        control[:, _l.END] = np.inf if end is None else packed(np.asarray(end)[:, None])[:, 0]
         control[:, _l.TOLERANCE] = tolerance
         control[:, _l.LIMIT] = _MOST_STEPS
         if self._gauge is not None:
@@ -106,7 +106,7 @@ class Integrator:
         else:
             out = self._run(x, control, samples, _NO_LIMIT)
             states = np.moveaxis(out, -1, 1).reshape(-1, len(samples), self.state)[:count]
-            flat = _unpacked(control, count)
+            flat = unpacked(control, count)
         final, times = states[:, -1].copy(), flat[:, _l.TIME].copy()
         held = np.flatnonzero(flat[:, _l.STATUS] == _l.EVENT)
         if held.size:
@@ -123,17 +123,17 @@ class Integrator:
         Lanes that have arrived leave, and the others close up, so that none waits for a slow
         neighbour. What a lane computes does not depend on it.
         """
-        whole, flat = _unpacked(x, count).copy(), _unpacked(control, count).copy()
+        whole, flat = unpacked(x, count).copy(), unpacked(control, count).copy()
         left = np.arange(count)
         while left.size:
             self._run(x, control, samples, _STEPS_AT_A_TIME)
-            whole[left] = _unpacked(x, left.size)
-            flat[left] = _unpacked(control, left.size)
+            whole[left] = unpacked(x, left.size)
+            flat[left] = unpacked(control, left.size)
             ends = np.minimum(flat[left, _l.END], samples[0])
             on = (flat[left, _l.STATUS] == _l.FLYING) & (flat[left, _l.TIME] < ends)
             left = left[on]
             if left.size:
-                x, control = _packed(whole[left]), _packed(flat[left])
+                x, control = packed(whole[left]), packed(flat[left])
         return whole, flat
 
     def _run(self, x: Array, control: Array, samples: Array, most: int) -> Array:
@@ -167,19 +167,19 @@ class Integrator:
         the full order of the method, so that nothing is interpolated.
         """
         count = len(states)
-        x = _packed(np.concatenate([states, times[:, None], parameters], 1))
+        x = packed(np.concatenate([states, times[:, None], parameters], 1))
         control = aligned((len(x), _l.CONTROL_ROWS, LANES))
         control[...] = 0.0
         control[:, _l.TIME] = x[:, self.state]
         y = aligned((len(x), self.state, LANES))
 
         def after(length: Array) -> tuple[Array, Array]:
-            control[:, _l.STEP] = _packed(length[:, None])[:, 0]
+            control[:, _l.STEP] = packed(length[:, None])[:, 0]
             self._step(x.ctypes.data, control.ctypes.data, y.ctypes.data, len(x))
             trial = x.copy()
             trial[:, : self.state] = y
             trial[:, self.state] += control[:, _l.STEP]
-            return self._gauges(trial).ravel()[:count], _unpacked(y, count)
+            return self._gauges(trial).ravel()[:count], unpacked(y, count)
 
         low, high = np.zeros(count), steps.copy()
         g_low, g_high = after(low)[0], after(high)[0]
@@ -199,16 +199,3 @@ class Integrator:
             if found.all():
                 break
         return after(middle)[1], times + middle
-
-
-def _packed(rows: Array) -> Array:
-    """(N, m) as blocks of lanes (B, m, 8), the last row repeated to fill."""
-    blocks = -(-len(rows) // LANES)
-    result = aligned((blocks, rows.shape[1], LANES))
-    padded = np.concatenate([rows, np.repeat(rows[-1:], blocks * LANES - len(rows), 0)])
-    result[...] = padded.reshape(blocks, LANES, -1).swapaxes(1, 2)
-    return result
-
-
-def _unpacked(blocks: Array, count: int) -> Array:
-    return blocks.swapaxes(1, 2).reshape(-1, blocks.shape[1])[:count]

@@ -53,14 +53,8 @@ class Kernel:
         if count == 0:
             return np.empty((*x.shape[:-1], self.outputs))
         flat = x.reshape(count, self.inputs)
-        blocks = -(-count // LANES)
-        padded = aligned((blocks * LANES, self.inputs))
-        padded[:count] = flat
-        padded[count:] = flat[-1]
-        packed = aligned((blocks, self.inputs, LANES))
-        packed[...] = padded.reshape(blocks, LANES, self.inputs).swapaxes(1, 2)
-        result = self.blocks(packed).swapaxes(1, 2).reshape(-1, self.outputs)
-        return result[:count].reshape(*x.shape[:-1], self.outputs)
+        result = unpacked(self.blocks(packed(flat)), count)
+        return result.reshape(*x.shape[:-1], self.outputs)
 
     def blocks(self, x: Array, out: Array | None = None) -> Array:
         """The same without repacking: x (blocks, inputs, 8), from `aligned`, gives
@@ -78,6 +72,20 @@ class Kernel:
 
     def _run(self, x: Array, out: Array) -> None:
         self._many(x.ctypes.data, out.ctypes.data, len(x))
+
+
+def packed(rows: Array) -> Array:
+    """Rows (N, m) as blocks of lanes (B, m, 8), the last row repeated to fill."""
+    blocks = -(-len(rows) // LANES)
+    padded = np.concatenate([rows, np.repeat(rows[-1:], blocks * LANES - len(rows), 0)])
+    result = aligned((blocks, rows.shape[1], LANES))
+    result[...] = padded.reshape(blocks, LANES, -1).swapaxes(1, 2)
+    return result
+
+
+def unpacked(blocks: Array, count: int) -> Array:
+    """The first `count` rows (N, m) of blocks of lanes (B, m, 8)."""
+    return blocks.swapaxes(1, 2).reshape(-1, blocks.shape[1])[:count]
 
 
 def aligned(shape: tuple[int, ...]) -> Array:

@@ -17,6 +17,7 @@ from somersault.flight._takeoff import JointTakeoff, Takeoff
 from somersault.model import Joint
 from somersault.model._pose import pose, spread
 from somersault.stability import Spin
+from somersault.stability._linear import locked_speeds
 
 
 def deviated_flight(
@@ -50,10 +51,8 @@ def deviated_flight(
     deviation = np.array([number(name, turn) for name, turn in turns.items()])
     springs = spread(model, stiffness or {}, mirrored=False)
     dampers = spread(model, damping or {}, mirrored=False)
-    locked = set(model.speeds) if "all" in set(lock) else set(
-        spread(model, dict.fromkeys(lock, 0.0), mirrored=False)
-    )  # fmt: skip
-    for name in {*springs, *dampers, *locked}:
+    locked = {model.speeds[place] for place in locked_speeds(model, lock)}
+    for name in (*springs, *dampers):
         model.joint(name)
     moved = pose(model, {**_angles(spin), **_sums(spin, joints or {})})
     setups = {
@@ -99,7 +98,7 @@ def _setup(
     k = float(springs.get(joint.name, 0.0)) * rate**2 * inertia
     b = float(dampers.get(joint.name, 0.0)) * abs(rate) * inertia
     if joint.kind == "ball":
-        return JointTakeoff("locked" if joint.name in locked else "sprung", stiffness=k, damping=b)
+        return JointTakeoff("locked" if speed in locked else "sprung", stiffness=k, damping=b)
     angle = float(moved[spin.model.coordinate_slice(joint.name)][0])
     if joint.name in locked:
         return JointTakeoff("locked", angle=angle)

@@ -12,13 +12,11 @@ from typing import Any
 import casadi as ca
 
 from somersault.dynamics import Equations, Expression
-from somersault.dynamics._composite import composites, outboard_inertia
+from somersault.dynamics._composite import outboard_inertia
 from somersault.dynamics._motion import place
 from somersault.dynamics._newton_euler import inverse_dynamics
 from somersault.dynamics._vector import Vec, cross, scale, vadd, vsub
 from somersault.model import Model
-
-# The axis of spin, as in the equations, is a unit vector in the base's axes.
 
 
 def spin_matrices(equations: Equations) -> Expression:
@@ -81,12 +79,3 @@ def deviated(model: Model, q: Vec, deviation: Vec) -> Vec:
         else:
             pose += [own[0] + small[0]]
     return pose
-
-
-def composite_inertia(equations: Equations) -> Any:
-    """Inertia about the centre of mass as a plain CasADi function of (pose, parameters)."""
-    expression = equations.expression("inertia")
-    return expression.function()
-
-
-__all__ = ["composites", "deviated", "spin_matrices"]
