@@ -12,51 +12,27 @@ from pathlib import Path
 
 import numpy as np
 
+from somersault.model._de_leva import (
+    HEEL_BEHIND_ANKLE,
+    HIP_HALF_WIDTH,
+    MALE,
+    SHOULDER_HALF_WIDTH,
+)
+
 SHIPPED = Path(__file__).parents[1] / "src" / "somersault" / "model" / "shipped"
-MASS = 73.0
-
-
-@dataclass(frozen=True)
-class Segment:
-    """One row of de Leva's Table 4: percentages of body mass and of the segment's length (m).
-
-    `com` is measured from the first-named end point; the radii of gyration are about the
-    sagittal (front), transverse (left) and longitudinal axes. `radius` is for pictures only.
-    """
-
-    mass: float
-    length: float
-    com: float
-    gyration: tuple[float, float, float]
-    radius: float
-
-    @property
-    def kilograms(self) -> float:
-        return MASS * self.mass / 100
-
-    @property
-    def inertia(self) -> np.ndarray:
-        """Principal inertias about the segment's centre of mass, kg m²."""
-        return self.kilograms * (np.array(self.gyration) / 100 * self.length) ** 2
-
-
-# de Leva P (1996) Adjustments to Zatsiorsky-Seluyanov's segment inertia parameters. J Biomech
-# 29(9):1223-1230, Table 4, males. End points in the order in which `com` is measured.
-TABLE = {
-    "head": Segment(6.94, 0.2429, 50.02, (30.3, 31.5, 26.1), 0.085),  # vertex, cervicale
-    "trunk": Segment(43.46, 0.6033, 51.38, (32.8, 30.6, 16.9), 0.14),  # cervicale, mid-hip
-    "upper_arm": Segment(2.71, 0.2817, 57.72, (28.5, 26.9, 15.8), 0.042),  # shoulder, elbow
-    "forearm": Segment(1.62, 0.2689, 45.74, (27.6, 26.5, 12.1), 0.034),  # elbow, wrist
-    "hand": Segment(0.61, 0.1879, 36.24, (28.8, 23.5, 18.4), 0.024),  # wrist, third finger tip
-    "thigh": Segment(14.16, 0.4222, 40.95, (32.9, 32.9, 14.9), 0.070),  # hip, knee
-    "shank": Segment(4.33, 0.4403, 43.95, (25.1, 24.6, 10.2), 0.048),  # knee, ankle
-    "foot": Segment(1.37, 0.2581, 44.15, (25.7, 24.5, 12.4), 0.032),  # heel, toe tip
+SHOULDER_HEIGHT = MALE.shoulder_height
+# Of the capsules that picture the segments, m; chosen.
+RADII = {
+    "head": 0.085,
+    "trunk": 0.14,
+    "upper_arm": 0.042,
+    "forearm": 0.034,
+    "hand": 0.024,
+    "thigh": 0.070,
+    "shank": 0.048,
+    "foot": 0.032,
 }
-SHOULDER_HEIGHT = 0.5155  # mid-hip to mid-shoulder: the same table, row MIDS-MIDH
-# The table has no breadths between joint centres, and no place of the ankle along the foot.
-SHOULDER_HALF_WIDTH = 0.18  # Carl Furrer: Playter (1994), Table 4.1
-HIP_HALF_WIDTH = 0.085  # Braune and Fischer (1895): 0.17 m between the hip centres
-HEEL_BEHIND_ANKLE = 0.06  # assumed; 0.02 m more or less changes no inertia by 1.1 %
+TABLE = {name: MALE.segments[name] for name in RADII}
 
 FRONT, LEFT, HEAD = np.eye(3)
 
@@ -155,16 +131,19 @@ def body(
     start: float = 0.0,
 ) -> list[str]:
     """Lines of one segment that runs down its own axis 3 from `start` above its frame."""
-    segment = TABLE[name.removeprefix("left_").removeprefix("right_")]
+    kind = name.removeprefix("left_").removeprefix("right_")
+    segment, radius = TABLE[kind], RADII[kind]
+    mass = MALE.mass * segment.mass / 100
+    inertia = segment.inertia(mass, segment.length)
     centre = start - segment.com / 100 * segment.length
-    top, bottom = start - segment.radius / 2, start - segment.length + segment.radius / 2
+    top, bottom = start - radius / 2, start - segment.length + radius / 2
     inertial = (
-        f'  <inertial pos="0 0 {numbers([centre])}" mass="{numbers([segment.kilograms])}"'
-        f' diaginertia="{numbers(segment.inertia)}"/>'
+        f'  <inertial pos="0 0 {numbers([centre])}" mass="{numbers([mass])}"'
+        f' diaginertia="{numbers(inertia)}"/>'
     )
     geom = (
         f'  <geom name="{name}" fromto="0 0 {numbers([top])} 0 0 {numbers([bottom])}"'
-        f' size="{numbers([segment.radius])}"/>'
+        f' size="{numbers([radius])}"/>'
     )
     return [
         f'<body name="{name}" pos="{numbers(position)}" quat="{numbers(quaternion(rotation))}">',

@@ -10,7 +10,10 @@ import pytest
 import somersault
 
 SOURCE = Path(somersault.__file__).parent
-ROOMS = ["attitude", "rigid", "model", "dynamics", "stability", "flight", "view", "thesis", "cli"]
+ROOMS = [
+    "attitude", "rigid", "model", "dynamics", "stability", "flight", "view", "ensembles", "thesis",
+    "cli",
+]  # fmt: skip
 FOUNDATION = {"_errors", "_array", "_files"}
 MOST_LINES = 420
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import fields
 from functools import cache
 from itertools import combinations_with_replacement
 
@@ -386,7 +387,5 @@ def test_neighbours_do_not_matter(whole: Solution) -> None:
     order = np.random.default_rng(9).permutation(361)
     mixed = oscillator().solve(start[order], parameters[order], np.array([0.4, 1.0, 2.0]), 1e-10)
     back = np.argsort(order)
-    again = Solution(
-        *(getattr(mixed, n)[back] for n in ("states", "end", "final", "status", "steps"))
-    )
+    again = Solution(*(getattr(mixed, field.name)[back] for field in fields(Solution)))
     same(again, whole, 361)

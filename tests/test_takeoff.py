@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-import casadi as ca
 import numpy as np
 import pytest
 
 from somersault import SomersaultError
 from somersault.attitude import matrix_from_quaternion
-from somersault.flight import Flight, JointTakeoff, Takeoff, fly
-from somersault.flight._moves import path
+from somersault.flight import Flight, JointTakeoff, Takeoff, _path, fly
 from somersault.model import GROUND, Body, Joint, Model, load
 
 NAN, INF = float("nan"), float("inf")
@@ -349,9 +347,8 @@ TIMES, ANGLES = np.array([0.2, 0.5, 0.6, 1.5]), np.array([0.3, 1.2, 1.2, -0.4])
 
 def moves(t: np.ndarray) -> np.ndarray:
     """Values, rates and accelerations at times t, (3, time)."""
-    s = ca.SX.sym("t")
-    one = ca.Function("path", [s], [ca.vertcat(*path(s, TIMES.tolist(), ANGLES.tolist()))])
-    return np.array(one.map(len(t))(t[None, :]))
+    since, coefficients = _path.moves(TIMES, ANGLES).at(t[None])
+    return np.array(_path.polynomial(t - since[0], list(coefficients[0].T)))
 
 
 def test_moves_are_what_their_rates_say() -> None:

@@ -80,30 +80,29 @@ def test_share_of_the_sphere_is_what_chance_finds(model):
 
 def test_a_batch_of_lifetimes_is_flights_flown_one_by_one():
     angles, springs = np.array([0.9, 1.3]), np.array([0.0, 0.5, 1.1])
-    for begun in ("rates", "momentum"):
-        found = layout.lifetimes(angles, springs, 0.02, 0.01, begun)
-        for i, angle in enumerate(angles):
-            for j, spring in enumerate(springs):
-                start = layout.takeoff(layout.sprung(angle, spring), 0.02, 0.01, begun)
-                alone = fly("furrer", start, 9.6 * layout.TURN, until="quarter twist", samples=600)
-                turns = min(alone.landing.somersault / (2 * np.pi), 8.0)
-                assert found.somersaults[i, j] == pytest.approx(turns, abs=1e-5)
-                assert (turns < 8) == (alone.ended == "event" and turns < 8)
-                if alone.ended == "event" and turns < 8:
-                    assert found.nominal[i, j] * layout.TURN == pytest.approx(alone.times[-1], 1e-6)
+    found = ridge.lifetimes(angles, springs, 0.02, 0.01)
+    for i, angle in enumerate(angles):
+        for j, spring in enumerate(springs):
+            start = layout.takeoff(layout.sprung(angle, spring), 0.02, 0.01, "rates")
+            alone = fly("furrer", start, 9.6 * layout.TURN, until="quarter twist", samples=600)
+            turns = min(alone.landing.somersault / (2 * np.pi), 8.0)
+            assert found.somersaults[i, j] == pytest.approx(turns, abs=1e-5)
+            assert (turns < 8) == (alone.ended == "event" and turns < 8)
+            if turns < 8:
+                most = np.abs(alone.dataset["twist"].values[:-1]).max()
+                assert found.furthest[i, j] == pytest.approx(most, abs=0.05)
 
 
 def test_lifetimes_do_not_depend_on_the_accuracy():
     """Where they last; a flight that wanders along the edge for long multiplies any error."""
     few = np.array([0.6, 1.2, 1.8]), np.array([0.3, 1.5])
-    rough, fine = (layout.lifetimes(*few, 0.01, 0.0, "rates", accuracy=a) for a in (1e-8, 1e-11))
+    rough, fine = (ridge.lifetimes(*few, 0.01, 0.0, accuracy=a) for a in (1e-8, 1e-11))
     np.testing.assert_allclose(rough.somersaults, fine.somersaults, atol=1e-4)
 
 
 @pytest.mark.parametrize(("spring", "lasts"), [(0.5, 2.3), (1.8, 2.7)])
 def test_lifetimes_of_another_implementation(spring, lasts):
-    found = layout.lifetimes(np.array([1.3]), np.array([spring]), 0.01, 0.0, "rates")
-    assert found.nominal[0, 0] == pytest.approx(lasts, abs=0.05)
+    assert layout.lifetime(1.3, spring, "rates") == pytest.approx(lasts, abs=0.05)
 
 
 def test_the_two_starts_differ_as_they_say():

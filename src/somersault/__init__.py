@@ -15,19 +15,21 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from somersault import stability
+    from somersault import ensembles, stability
     from somersault._errors import SomersaultError, SomersaultWarning
     from somersault.dynamics import Equations
-    from somersault.flight import (
-        Flight,
-        JointTakeoff,
-        Landing,
-        Takeoff,
-        deviated_flight,
-        fly,
-        landings,
+    from somersault.ensembles import Ensemble, Report, Vary, ensemble
+    from somersault.flight import Flight, JointTakeoff, Landing, Takeoff, deviated_flight, fly
+    from somersault.model import (
+        Body,
+        Joint,
+        Model,
+        athlete,
+        athlete_from_measurements,
+        load,
+        named_pose,
+        shipped,
     )
-    from somersault.model import Body, Joint, Model, load, shipped
     from somersault.stability import LinearSpin, Mode, Spin, spin
 
 __version__ = "0.1.0"
@@ -38,16 +40,22 @@ _HOME = {
     "Body": "somersault.model",
     "Joint": "somersault.model",
     "Model": "somersault.model",
+    "athlete": "somersault.model",
+    "athlete_from_measurements": "somersault.model",
     "load": "somersault.model",
+    "named_pose": "somersault.model",
     "shipped": "somersault.model",
     "Equations": "somersault.dynamics",
+    "Ensemble": "somersault.ensembles",
+    "Report": "somersault.ensembles",
+    "Vary": "somersault.ensembles",
+    "ensemble": "somersault.ensembles",
     "Flight": "somersault.flight",
     "JointTakeoff": "somersault.flight",
     "Landing": "somersault.flight",
     "Takeoff": "somersault.flight",
     "deviated_flight": "somersault.flight",
     "fly": "somersault.flight",
-    "landings": "somersault.flight",
     "LinearSpin": "somersault.stability",
     "Mode": "somersault.stability",
     "Spin": "somersault.stability",
@@ -56,6 +64,7 @@ _HOME = {
 
 __all__ = [
     "Body",
+    "Ensemble",
     "Equations",
     "Flight",
     "Joint",
@@ -64,14 +73,20 @@ __all__ = [
     "LinearSpin",
     "Mode",
     "Model",
+    "Report",
     "SomersaultError",
     "SomersaultWarning",
     "Spin",
     "Takeoff",
+    "Vary",
+    "athlete",
+    "athlete_from_measurements",
     "deviated_flight",
+    "ensemble",
+    "ensembles",
     "fly",
-    "landings",
     "load",
+    "named_pose",
     "shipped",
     "spin",
     "stability",
@@ -79,8 +94,8 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    if name == "stability":
-        return import_module("somersault.stability")
+    if name in ("ensembles", "stability"):
+        return import_module(f"somersault.{name}")
     if name in _HOME:
         return getattr(import_module(_HOME[name]), name)
     raise AttributeError(f"module 'somersault' has no attribute {name!r}")

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import io
 import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from somersault.cli._assignments import assignments
+from somersault.cli._pictures import PICTURES, check_picture, save_picture
 
 if TYPE_CHECKING:
     from somersault._array import Array
@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="joint angles in rad (m for slides); the rest stand as the file draws them",
     )
     parser.add_argument(
-        "--out", type=Path, metavar="FILE", help="write the map, in 3-D and unrolled: .png or .svg"
+        "--out", type=Path, metavar="FILE", help=f"write the map, in 3-D and unrolled: {PICTURES}"
     )
     parser.add_argument(
         "--energies",
@@ -57,8 +57,8 @@ def run(chosen: argparse.Namespace) -> None:
 
     if not 1 <= chosen.energies <= _MOST:
         raise SomersaultError(f"--energies is {chosen.energies}; give 1 to {_MOST} curves a side")
-    if chosen.out is not None and chosen.out.suffix.lower() not in (".png", ".svg"):
-        raise SomersaultError(f"--out {chosen.out} is no picture; let it end in .png or .svg")
+    if chosen.out is not None:
+        check_picture("--out", chosen.out)
     model = load(chosen.model)
     steady = spin(model, 2, assignments("--pose", chosen.pose))
     inertias = steady.principal_inertias
@@ -109,16 +109,10 @@ def _title(name: str, pose: dict[str, float]) -> str:
 
 
 def _draw(path: Path, inertias: Array, count: int, title: str) -> None:
-    from somersault._files import write
     from somersault.view import _sphere, _style
 
     with _style.style():
-        made = _sphere.sphere_map(inertias, _sphere.energies(inertias, count), title)
-        held = io.BytesIO()
-        ending = path.suffix.lower()[1:]
-        plain = {"Date": None, "Creator": None} if ending == "svg" else {"Software": None}
-        made.savefig(held, format=ending, dpi=160, metadata=plain)
-    write(path, held.getvalue())
+        save_picture(path, _sphere.sphere_map(inertias, _sphere.energies(inertias, count), title))
 
 
 _AXES = {1: "1 (front)", 2: "2 (left)", 3: "3 (head)"}

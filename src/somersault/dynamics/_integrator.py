@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 
 import casadi as ca
 import numpy as np
@@ -22,9 +22,11 @@ STATUS = {
     _l.BROKEN: "not finite",
 }
 _MOST_STEPS = 1_000_000
-_FIRST_STEP = 1e-3  # s; what it is costs a step or two
-_BLOCKS_A_TASK = 4
+FIRST_STEP = 1e-3  # s; what it is costs a step or two
+_BLOCKS_A_TASK = 4  # at least
+_TASKS_A_THREAD = 16  # at most: lanes differ in how long they take
 _STEPS_AT_A_TIME = 48
+_WORTH_CLOSING_UP = 0.7  # of the lanes: while more of them fly they stay where they are
 _NO_LIMIT = 2**62
 
 
@@ -34,7 +36,8 @@ class Solution:
 
     `states` (N, K, n): at the samples; after a lane has ended, its last state. `end` (N,) is
     when it ended, `final` (N, n) its state then, `status` (N,) a code of `STATUS`, `steps`
-    (N,) how many it took.
+    (N,) how many it took, `step` (N,) the length it would go on with. `watched` (N, K, w) and
+    `watched_final` (N, w) are what was watched until then.
     """
 
     states: Array
@@ -42,6 +45,9 @@ class Solution:
     final: Array
     status: Array
     steps: Array
+    step: Array
+    watched: Array
+    watched_final: Array
 
 
 class Integrator:
@@ -49,21 +55,33 @@ class Integrator:
 
     `slope` is a CasADi function of one vector (state, time, parameters) that gives the
     state's rate; `gauge`, of the same vector, a number whose change of sign ends a flight.
+    `watch` gives the watched numbers after a step from `Rows.look`, and `longest`, of the first
+    vector, bounds each step while something is watched.
     """
 
-    def __init__(self, slope: ca.Function, gauge: ca.Function | None = None) -> None:
+    def __init__(
+        self,
+        slope: ca.Function,
+        gauge: ca.Function | None = None,
+        watch: ca.Function | None = None,
+        longest: ca.Function | None = None,
+    ) -> None:
         self.state: int = slope.nnz_out(0)
         self.inputs: int = slope.nnz_in(0)
-        self._slope, self._gauge = slope, gauge
+        self._slope, self._gauge, self._watch, self._longest = slope, gauge, watch, longest
+        watched = 0 if watch is None else watch.nnz_out(0)
+        self._rows = _l.Rows(self.state, self.inputs - self.state - 1, watched)
 
     @cached_property
     def _engine(self):  # must outlive the functions taken from it
-        text = llvm_function(self._slope, "rhs")
-        if self._gauge is not None:
-            text += llvm_function(self._gauge, "gauge")
-        return compiled(
-            _l.integrator_module(text, self.state, self.inputs, self._gauge is not None)
-        )
+        functions = {
+            "rhs": self._slope,
+            "gauge": self._gauge,
+            "watch": self._watch,
+            "longest": self._longest,
+        }
+        text = "".join(llvm_function(f, name) for name, f in functions.items() if f is not None)
+        return compiled(_l.integrator_module(text, self._rows, self._gauge is not None))
 
     @cached_property
     def _fly(self):
@@ -83,106 +101,112 @@ class Integrator:
         samples: Array,
         tolerance: float,
         end: Array | None = None,
+        *,
+        begin: Array | None = None,
+        step: Array | None = None,
+        watched: Array | None = None,
     ) -> Solution:
-        """From `start` (N, n) at time 0 with `parameters` (N, m), at increasing `samples` (K,).
+        """From `start` (N, n) with `parameters` (N, m), at increasing `samples` (K,).
 
-        `tolerance` bounds each step's error in every state, relative to 1 + |state|; `end`
-        (N,) ends lanes before the last sample. An event is found to rounding.
+        Lanes begin at times `begin` (N,), 0 by default, with first steps `step` (N,). `tolerance`
+        bounds each step's error in every state, relative to 1 + |state|; `end` (N,) ends lanes
+        before the last sample. An event is found to rounding. `watched` (N, w) is what was
+        watched before.
         """
-        count = len(start)
-        x = packed(np.concatenate([start, np.zeros((count, 1)), parameters], 1))
+        count, before = len(start), self._rows.before_watched
+        times = np.zeros((count, 1)) if begin is None else np.asarray(begin)[:, None]
+        seen = np.zeros((count, 0)) if watched is None else watched
+        x = packed(np.concatenate([start, times, parameters, seen], 1))
         control = aligned((len(x), _l.CONTROL_ROWS, LANES))
         control[...] = 0.0
-        control[:, _l.STEP] = _FIRST_STEP
+        control[:, _l.TIME] = x[:, self.state]
+        control[:, _l.STEP] = FIRST_STEP if step is None else packed(step[:, None])[:, 0]
         control[:, _l.END] = np.inf if end is None else packed(np.asarray(end)[:, None])[:, 0]
         control[:, _l.TOLERANCE] = tolerance
         control[:, _l.LIMIT] = _MOST_STEPS
-        if self._gauge is not None:
-            control[:, _l.GAUGE] = self._gauges(x)
         samples = np.ascontiguousarray(samples, float)
         if len(samples) == 1:
             whole, flat = self._to_the_end(x, control, samples, count)
-            states = whole[:, None, : self.state]
+            out = np.concatenate([whole[:, : self.state], whole[:, before:]], 1)[:, None]
         else:
             out = self._run(x, control, samples, _NO_LIMIT)
-            states = np.moveaxis(out, -1, 1).reshape(-1, len(samples), self.state)[:count]
+            out = np.moveaxis(out, -1, 1).reshape(-1, len(samples), self._rows.outputs)[:count]
             flat = unpacked(control, count)
-        final, times = states[:, -1].copy(), flat[:, _l.TIME].copy()
+        final, stopped = out[:, -1].copy(), flat[:, _l.TIME].copy()
         held = np.flatnonzero(flat[:, _l.STATUS] == _l.EVENT)
         if held.size:
-            final[held], times[held] = self._events(
-                final[held], times[held], parameters[held], flat[held, _l.STEP]
+            final[held], stopped[held] = self._events(
+                final[held], stopped[held], parameters[held], flat[held, _l.STEP]
             )
-        return Solution(states, times, final, flat[:, _l.STATUS], flat[:, _l.STEPS].astype(int))
+        n = self.state
+        return Solution(
+            out[..., :n], stopped, final[:, :n], flat[:, _l.STATUS],
+            flat[:, _l.STEPS].astype(int), flat[:, _l.STEP], out[..., n:], final[:, n:],
+        )  # fmt: skip
 
     def _to_the_end(
         self, x: Array, control: Array, samples: Array, count: int
     ) -> tuple[Array, Array]:
-        """States (count, inputs) and controls (count, rows) at the end, a few steps at a time.
+        """Inputs (count, rows) and controls (count, rows) at the end, a few steps at a time.
 
-        Lanes that have arrived leave, and the others close up, so that none waits for a slow
+        Lanes that have arrived leave, and the others close up, so that few wait for a slow
         neighbour. What a lane computes does not depend on it.
         """
-        whole, flat = unpacked(x, count).copy(), unpacked(control, count).copy()
+        whole = np.empty((count, self._rows.inputs))
+        flat = np.empty((count, _l.CONTROL_ROWS))
         left = np.arange(count)
-        while left.size:
+        while True:
             self._run(x, control, samples, _STEPS_AT_A_TIME)
-            whole[left] = unpacked(x, left.size)
-            flat[left] = unpacked(control, left.size)
-            ends = np.minimum(flat[left, _l.END], samples[0])
-            on = (flat[left, _l.STATUS] == _l.FLYING) & (flat[left, _l.TIME] < ends)
+            ends = np.minimum(control[:, _l.END], samples[0])
+            on = (control[:, _l.STATUS] == _l.FLYING) & (control[:, _l.TIME] < ends)
+            on = on.ravel()[: left.size]
+            if on.sum() > _WORTH_CLOSING_UP * left.size:
+                continue
+            rows, controls = unpacked(x, left.size), unpacked(control, left.size)
+            whole[left[~on]], flat[left[~on]] = rows[~on], controls[~on]
             left = left[on]
-            if left.size:
-                x, control = packed(whole[left]), packed(flat[left])
-        return whole, flat
+            if not left.size:
+                return whole, flat
+            x, control = packed(rows[on]), packed(controls[on])
 
     def _run(self, x: Array, control: Array, samples: Array, most: int) -> Array:
-        out = aligned((len(x), len(samples), self.state, LANES))
+        out = aligned((len(x), len(samples), self._rows.outputs, LANES))
 
-        def part(bounds: tuple[int, int]) -> None:
-            a, b = bounds
+        def part(a: int, b: int) -> None:
             self._fly(
                 x[a:b].ctypes.data, control[a:b].ctypes.data, samples.ctypes.data,
                 out[a:b].ctypes.data, len(samples), b - a, most,
             )  # fmt: skip
 
-        edges = [*range(0, len(x), _BLOCKS_A_TASK), len(x)]
-        if len(edges) <= 2 or threads() == 1:
-            part((0, len(x)))
-        else:
-            list(pool().map(part, pairwise(edges)))
+        _in_parts(part, len(x))
         return out
 
-    def _gauges(self, x: Array) -> Array:
-        assert self._gauge is not None
-        flat = np.moveaxis(x, -1, 1).reshape(-1, self.inputs)
-        return np.array(self._gauge.map(len(flat))(flat.T)).reshape(-1, LANES)
-
     def _events(
-        self, states: Array, times: Array, parameters: Array, steps: Array
+        self, outputs: Array, times: Array, parameters: Array, steps: Array
     ) -> tuple[Array, Array]:
-        """States and times at which the gauge is zero, within one step of each state.
+        """Outputs and times at which the gauge is zero, within one step of each state.
 
         By the Illinois form of regula falsi on the length of a single whole step, which has
         the full order of the method, so that nothing is interpolated.
         """
-        count = len(states)
-        x = packed(np.concatenate([states, times[:, None], parameters], 1))
+        count, n = len(outputs), self.state
+        x = packed(np.concatenate([outputs[:, :n], times[:, None], parameters, outputs[:, n:]], 1))
         control = aligned((len(x), _l.CONTROL_ROWS, LANES))
         control[...] = 0.0
-        control[:, _l.TIME] = x[:, self.state]
-        y = aligned((len(x), self.state, LANES))
+        control[:, _l.TIME] = x[:, n]
+        y = aligned((len(x), self._rows.outputs, LANES))
 
-        def after(length: Array) -> tuple[Array, Array]:
+        def part(a: int, b: int) -> None:
+            self._step(x[a:b].ctypes.data, control[a:b].ctypes.data, y[a:b].ctypes.data, b - a)
+
+        def after(length: Array) -> Array:
+            """The gauge after steps so long; the states are in y."""
             control[:, _l.STEP] = packed(length[:, None])[:, 0]
-            self._step(x.ctypes.data, control.ctypes.data, y.ctypes.data, len(x))
-            trial = x.copy()
-            trial[:, : self.state] = y
-            trial[:, self.state] += control[:, _l.STEP]
-            return self._gauges(trial).ravel()[:count], unpacked(y, count)
+            _in_parts(part, len(x))
+            return control[:, _l.GAUGE].flatten()[:count]
 
         low, high = np.zeros(count), steps.copy()
-        g_low, g_high = after(low)[0], after(high)[0]
+        g_low, g_high = after(low), after(high)
         middle, found = high.copy(), np.zeros(count, bool)
         for _ in range(60):
             with np.errstate(invalid="ignore", divide="ignore"):
@@ -190,7 +214,7 @@ class Integrator:
             trial = np.where(np.isfinite(trial), trial, (low + high) / 2)
             # A lane that has converged stays, so that it owes nothing to its neighbours.
             middle = np.where(found, middle, trial)
-            g, _ = after(middle)
+            g = after(middle)
             same = g * g_high > 0
             g_low = np.where(same, g_low / 2, g_high)
             low = np.where(same, low, high)
@@ -198,4 +222,15 @@ class Integrator:
             found = found | (np.abs(high - low) <= 1e-15 * (1 + times)) | (g == 0)
             if found.all():
                 break
-        return after(middle)[1], times + middle
+        after(middle)
+        return unpacked(y, count), times + middle
+
+
+def _in_parts(part: Callable[[int, int], None], blocks: int) -> None:
+    """Call part(a, b) for all blocks, shared out among the threads."""
+    task = max(_BLOCKS_A_TASK, -(-blocks // (threads() * _TASKS_A_THREAD)))
+    edges = [*range(0, blocks, task), blocks]
+    if len(edges) <= 2 or threads() == 1:
+        part(0, blocks)
+    else:
+        list(pool().map(part, edges[:-1], edges[1:]))

@@ -8,6 +8,7 @@ loops, so what a lane does never depends on its neighbours.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from somersault.dynamics import _dop853 as table
 from somersault.dynamics._llvm import HEADER, LANES, VECTOR, number
@@ -87,29 +88,76 @@ class _Text:
         return total
 
 
-def integrator_module(equations: str, state: int, inputs: int, event: bool) -> str:
+@dataclass(frozen=True)
+class Rows:
+    """How many rows a block has: `state`, then the time, then `parameters`, then `watched`."""
+
+    state: int
+    parameters: int
+    watched: int = 0
+
+    @property
+    def before_watched(self) -> int:
+        """Where the watched rows begin."""
+        return self.state + 1 + self.parameters
+
+    @property
+    def inputs(self) -> int:
+        """All of them."""
+        return self.before_watched + self.watched
+
+    @property
+    def outputs(self) -> int:
+        """Those that are handed back: the state and what is watched."""
+        return self.state + self.watched
+
+    @property
+    def look(self) -> int:
+        """What `watch` is given: states and slopes at both ends of a step, both times,
+        parameters, and what was watched so far."""
+        return 4 * self.state + 2 + self.parameters + self.watched
+
+
+def integrator_module(equations: str, rows: Rows, event: bool) -> str:
     """LLVM text with `fly` and `step`.
 
-    `equations` defines @rhs(x, dy) and, with `event`, @gauge(x, g): x holds `inputs` rows, the
-    `state` rows first, then the time, then parameters that stay.
+    `equations` defines @rhs(x, dy); with `event`, @gauge(x, g); and where there are watched rows
+    @watch(look, watched), called after each step that counts with the rows of `Rows.look`, and
+    @longest(x, step), which bounds a step so that nothing is missed between its ends.
 
     fly(x, control, samples, out, count, blocks, most): carry each block of lanes to each of
     `count` sample times in turn (a lane stops early at its own END, at a step in which the gauge
-    changes sign, or broken), and store the state rows: out[block][sample][row][lane]. In a
+    changes sign, or broken), and store the output rows: out[block][sample][row][lane]. In a
     step that holds an event the lane stays at the step's beginning with STEP its length. After
     `most` steps a block is left where it is; called again it goes on as if it had not been.
-    step(x, control, y, blocks): one step of length STEP from x, into y[block][row][lane].
+    step(x, control, y, blocks): one step of length STEP from x, into y[block][row][lane], and
+    the gauge after it into the control.
     """
     return "\n".join(
         [
             HEADER,
             equations,
-            _arrive(state, inputs, event),
-            _single(state, inputs),
-            _fly(state, inputs),
-            _many_steps(state, inputs),
+            _arrive(rows, event),
+            _single(rows, event),
+            _fly(rows, event),
+            _many_steps(rows),
         ]
     )
+
+
+def _watched(t: _Text, rows: Rows, before: str, after: str) -> list[str]:
+    """What is watched, after the step from %x to %z between the two times."""
+    state = rows.state
+    values = [t.load("%x", row) for row in range(state)]
+    values += [t.load("%k", row) for row in range(state)]
+    values += [t.load("%z", row) for row in range(state)]
+    values += [t.load("%k", 12 * state + row) for row in range(state)]
+    values += [before, after]
+    values += [t.load("%x", row) for row in range(state + 1, rows.inputs)]
+    for row, value in enumerate(values):
+        t.store("%w", row, value)
+    t.lines.append("  call void @watch(ptr %w, ptr %v)")
+    return [t.load("%v", row) for row in range(rows.watched)]
 
 
 def _stages(t: _Text, state: int, step: str, time: str) -> list[str]:
@@ -147,9 +195,10 @@ def _error(t: _Text, state: int, step: str, tolerance: str, new: list[str]) -> s
     return t.two("fdiv", scaled, t.two("fmul", below, number(float(state))))
 
 
-def _arrive(state: int, inputs: int, event: bool) -> str:
-    """arrive(x, control, k, z, until): step one block until every lane is there or done."""
+def _arrive(rows: Rows, event: bool) -> str:
+    """arrive(x, control, k, z, …, until): step one block until every lane is there or done."""
     t = _Text()
+    state = rows.state
     time, step = t.load("%c", TIME), t.load("%c", STEP)
     end = t.least(t.load("%c", END), "%until")
     status = t.load("%c", STATUS)
@@ -160,6 +209,9 @@ def _arrive(state: int, inputs: int, event: bool) -> str:
     allowed = t.emit("icmp slt i64 %taken, %most")
     go = t.emit(f"and i1 {needed}, {allowed}")
     t.lines += [f"  br i1 {go}, label %advance, label %done", "advance:"]
+    if rows.watched:
+        t.lines.append("  call void @longest(ptr %x, ptr %g)")
+        step = t.least(step, t.load("%g", 0))
     clipped = t.test("oge", step, left)
     taken = t.where(flying, t.where(clipped, left, step), number(0.0))
     new = _stages(t, state, taken, time)
@@ -209,6 +261,9 @@ def _arrive(state: int, inputs: int, event: bool) -> str:
     # The last step lands on the end exactly, whatever rounding adds.
     arrived = t.where(clipped, end, t.two("fadd", time, taken))
     now = t.where(accepted, arrived, time)
+    if rows.watched:
+        for row, value in enumerate(_watched(t, rows, time, arrived), rows.before_watched):
+            t.store("%x", row, t.where(accepted, value, t.load("%x", row)))
     t.store("%c", TIME, now)
     t.store("%x", state, now)
     for row in range(state):
@@ -217,7 +272,8 @@ def _arrive(state: int, inputs: int, event: bool) -> str:
         t.store("%k", row, slope)
     body = "\n".join(t.lines)
     return f"""
-define void @arrive(ptr %x, ptr %c, ptr %k, ptr %z, ptr %g, {VECTOR} %until, i64 %most) #0 {{
+define void @arrive(
+    ptr %x, ptr %c, ptr %k, ptr %z, ptr %g, ptr %w, ptr %v, {VECTOR} %until, i64 %most) #0 {{
 entry:
   br label %again
 again:
@@ -231,56 +287,74 @@ done:
 """
 
 
-def _prepared(t: _Text, state: int, inputs: int) -> None:
+def _prepared(t: _Text, rows: Rows) -> None:
     """The parameters beside the trial state in %z, and the first slope in %k."""
-    for row in range(inputs):
+    for row in range(rows.before_watched):
         t.store("%z", row, t.load("%x", row))
     t.lines.append("  call void @rhs(ptr %z, ptr %k)")
 
 
-def _single(state: int, inputs: int) -> str:
-    """single(x, control, k, z, y): one step of one block."""
+def _gauged(t: _Text, state: str) -> None:
+    """The gauge of a state into the control."""
+    t.lines.append(f"  call void @gauge(ptr {state}, ptr %g)")
+    t.store("%c", GAUGE, t.load("%g", 0))
+
+
+def _single(rows: Rows, event: bool) -> str:
+    """single(x, control, …, y): one step of one block."""
     t = _Text()
-    _prepared(t, state, inputs)
-    new = _stages(t, state, t.load("%c", STEP), t.load("%c", TIME))
+    _prepared(t, rows)
+    time, step = t.load("%c", TIME), t.load("%c", STEP)
+    new = _stages(t, rows.state, step, time)
+    if rows.watched:
+        t.lines.append(f"  call void @rhs(ptr %z, ptr {t.at('%k', 12 * rows.state)})")
+        new += _watched(t, rows, time, t.two("fadd", time, step))
+    if event:
+        _gauged(t, "%z")
     for row, value in enumerate(new):
         t.store("%y", row, value)
     body = "\n".join(t.lines)
     return f"""
-define void @single(ptr %x, ptr %c, ptr %k, ptr %z, ptr %y) #0 {{
+define void @single(
+    ptr %x, ptr %c, ptr %k, ptr %z, ptr %g, ptr %w, ptr %v, ptr %y) #0 {{
 {body}
   ret void
 }}
 """
 
 
-def _memory(state: int, inputs: int) -> str:
-    return f"""  %k = alloca [{13 * state * LANES} x double], align 64
-  %z = alloca [{inputs * LANES} x double], align 64
-  %g = alloca [{LANES} x double], align 64"""
+def _memory(rows: Rows) -> str:
+    return f"""  %k = alloca [{13 * rows.state * LANES} x double], align 64
+  %z = alloca [{rows.before_watched * LANES} x double], align 64
+  %g = alloca [{LANES} x double], align 64
+  %w = alloca [{rows.look * LANES} x double], align 64
+  %v = alloca [{max(rows.watched, 1) * LANES} x double], align 64"""
 
 
-def _fly(state: int, inputs: int) -> str:
+def _fly(rows: Rows, event: bool) -> str:
     t = _Text()
-    _prepared(t, state, inputs)
+    _prepared(t, rows)
+    if event:
+        _gauged(t, "%x")
     prepare = "\n".join(t.lines)
     t = _Text()
     t._count = 10000
-    for row in range(state):
-        t.store("%to", row, t.load("%x", row))
+    kept = [*range(rows.state), *range(rows.before_watched, rows.inputs)]
+    for place, row in enumerate(kept):
+        t.store("%to", place, t.load("%x", row))
     keep = "\n".join(t.lines)
     splat = ", ".join([f"i32 {0}"] * LANES)
     return f"""
 define void @fly(ptr %xs, ptr %cs, ptr %samples, ptr %out, i64 %count, i64 %blocks, i64 %most) #0 {{
 entry:
-{_memory(state, inputs)}
+{_memory(rows)}
   br label %block
 block:
   %b = phi i64 [ 0, %entry ], [ %bn, %blockend ]
   %more = icmp slt i64 %b, %blocks
   br i1 %more, label %start, label %finished
 start:
-  %xo = mul i64 %b, {inputs * LANES}
+  %xo = mul i64 %b, {rows.inputs * LANES}
   %co = mul i64 %b, {CONTROL_ROWS * LANES}
   %x = getelementptr double, ptr %xs, i64 %xo
   %c = getelementptr double, ptr %cs, i64 %co
@@ -295,12 +369,13 @@ carry:
   %ts = load double, ptr %tp
   %t1 = insertelement {VECTOR} poison, double %ts, i32 0
   %until = shufflevector {VECTOR} %t1, {VECTOR} poison, <{LANES} x i32> <{splat}>
-  call void @arrive(ptr %x, ptr %c, ptr %k, ptr %z, ptr %g, {VECTOR} %until, i64 %most)
+  call void @arrive(
+    ptr %x, ptr %c, ptr %k, ptr %z, ptr %g, ptr %w, ptr %v, {VECTOR} %until, i64 %most)
   br label %store
 store:
   %ob = mul i64 %b, %count
   %os = add i64 %ob, %s
-  %oo = mul i64 %os, {state * LANES}
+  %oo = mul i64 %os, {rows.outputs * LANES}
   %to = getelementptr double, ptr %out, i64 %oo
 {keep}
   %sn = add i64 %s, 1
@@ -314,24 +389,25 @@ finished:
 """
 
 
-def _many_steps(state: int, inputs: int) -> str:
+def _many_steps(rows: Rows) -> str:
     return f"""
 define void @step(ptr %xs, ptr %cs, ptr %ys, i64 %blocks) #0 {{
 entry:
-{_memory(state, inputs)}
+{_memory(rows)}
   br label %block
 block:
   %b = phi i64 [ 0, %entry ], [ %bn, %start ]
   %more = icmp slt i64 %b, %blocks
   br i1 %more, label %start, label %finished
 start:
-  %xo = mul i64 %b, {inputs * LANES}
+  %xo = mul i64 %b, {rows.inputs * LANES}
   %co = mul i64 %b, {CONTROL_ROWS * LANES}
-  %yo = mul i64 %b, {state * LANES}
+  %yo = mul i64 %b, {rows.outputs * LANES}
   %x = getelementptr double, ptr %xs, i64 %xo
   %c = getelementptr double, ptr %cs, i64 %co
   %y = getelementptr double, ptr %ys, i64 %yo
-  call void @single(ptr %x, ptr %c, ptr %k, ptr %z, ptr %y)
+  call void @single(
+    ptr %x, ptr %c, ptr %k, ptr %z, ptr %g, ptr %w, ptr %v, ptr %y)
   %bn = add i64 %b, 1
   br label %block
 finished:

@@ -5,7 +5,10 @@ from __future__ import annotations
 import ctypes
 import math
 import os
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import cache, cached_property
 from itertools import pairwise
 
@@ -76,10 +79,14 @@ class Kernel:
 
 def packed(rows: Array) -> Array:
     """Rows (N, m) as blocks of lanes (B, m, 8), the last row repeated to fill."""
-    blocks = -(-len(rows) // LANES)
-    padded = np.concatenate([rows, np.repeat(rows[-1:], blocks * LANES - len(rows), 0)])
-    result = aligned((blocks, rows.shape[1], LANES))
-    result[...] = padded.reshape(blocks, LANES, -1).swapaxes(1, 2)
+    count, width = rows.shape
+    full = count // LANES
+    result = aligned((-(-count // LANES), width, LANES))
+    result[:full] = rows[: full * LANES].reshape(full, LANES, width).swapaxes(1, 2)
+    if len(result) > full:
+        last = rows[full * LANES :].T
+        result[full, :, : last.shape[1]] = last
+        result[full, :, last.shape[1] :] = last[:, -1:]
     return result
 
 
@@ -96,16 +103,39 @@ def aligned(shape: tuple[int, ...]) -> Array:
     return raw[start : start + count].reshape(shape)
 
 
-@cache
+_chosen: ContextVar[int | None] = ContextVar("threads", default=None)
+
+
 def threads() -> int:
-    return max(
-        1, len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    )
+    """How many threads compiled code uses: those chosen, or one a core."""
+    return _chosen.get() or cores()
 
 
 @cache
+def cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return max(1, len(os.sched_getaffinity(0)))
+    return os.cpu_count() or 1
+
+
+@contextmanager
+def use_threads(count: int | None) -> Iterator[None]:
+    """Within the block compiled code uses so many threads (None: one a core)."""
+    before = _chosen.set(count)
+    try:
+        yield
+    finally:
+        _chosen.reset(before)
+
+
 def pool() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(threads(), thread_name_prefix="somersault")
+    return _pool(threads())
+
+
+@cache
+def _pool(count: int) -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(count, thread_name_prefix="somersault")
 
 
 def _target_machine():

@@ -60,6 +60,8 @@ HEADER = f"""
 declare {VECTOR} @llvm.fmuladd.v{LANES}f64({VECTOR}, {VECTOR}, {VECTOR})
 declare {VECTOR} @llvm.sqrt.v{LANES}f64({VECTOR})
 declare {VECTOR} @llvm.fabs.v{LANES}f64({VECTOR})
+declare {VECTOR} @llvm.floor.v{LANES}f64({VECTOR})
+declare {VECTOR} @llvm.copysign.v{LANES}f64({VECTOR}, {VECTOR})
 attributes #0 = {{ nounwind "min-legal-vector-width"="512" "prefer-vector-width"="512" }}
 """
 
@@ -174,6 +176,7 @@ class _Writer:
             ),
             ca.OP_SQRT: lambda: self._call("sqrt", x[0]),
             ca.OP_FABS: lambda: self._call("fabs", x[0]),
+            ca.OP_FLOOR: lambda: self._call("floor", x[0]),
             ca.OP_SIN: lambda: self._sine_cosine(x[0])[0],
             ca.OP_COS: lambda: self._sine_cosine(x[0])[1],
             ca.OP_ATAN2: lambda: self._atan2(x[0], x[1]),
@@ -244,10 +247,13 @@ class _Writer:
         return self._where(below, number(1.0), number(0.0))
 
     def _atan2(self, y: str, x: str) -> str:
-        """atan2 for y ≥ 0, the only kind the equations make (the length of a vector part)."""
+        """atan2(|y|, x) with the sign of y; 0 at the origin."""
+        sign, y = y, self._call("fabs", y)
         steep = self._emit(f"fcmp ogt {_V} {y}, {self._call('fabs', x)}")
         top = self._where(steep, self._emit(f"fneg {_V} {x}"), y)
         bottom = self._where(steep, y, x)
+        nowhere = self._emit(f"fcmp oeq {_V} {bottom}, {number(0.0)}")
+        bottom = self._where(nowhere, number(1.0), bottom)
         # |top / bottom| ≤ 1 here; above tan(π/8) turn by π/4 once more.
         t = self._emit(f"fdiv {_V} {top}, {bottom}")
         size = self._call("fabs", t)
@@ -269,4 +275,5 @@ class _Writer:
         behind = self._emit(f"fcmp olt {_V} {x}, {number(0.0)}")
         flat = self._where(behind, number(3.141592653589793), number(0.0))
         offset = self._where(steep, number(1.5707963267948966), flat)
-        return self._two("fadd", angle, offset)
+        angle = self._two("fadd", angle, offset)
+        return self._emit(f"call {_V} @llvm.copysign.v{LANES}f64({_V} {angle}, {_V} {sign})")

@@ -3,7 +3,6 @@
 from somersault.flight._deviation import deviated_flight
 from somersault.flight._flight import Flight, Landing
 from somersault.flight._fly import fly
-from somersault.flight._landings import landings
 from somersault.flight._spec import FlightSpec, parse_spec, read_spec
 from somersault.flight._takeoff import JointTakeoff, Takeoff
 
@@ -15,7 +14,6 @@ __all__ = [
     "Takeoff",
     "deviated_flight",
     "fly",
-    "landings",
     "parse_spec",
     "read_spec",
 ]

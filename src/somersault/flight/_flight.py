@@ -11,6 +11,7 @@ import numpy as np
 
 from somersault._array import Array
 from somersault.attitude import matrix_from_quaternion, unwrapped_angles
+from somersault.flight._course import Course
 from somersault.flight._start import Start
 from somersault.flight._system import System
 
@@ -49,15 +50,14 @@ class Flight:
     _moments: Array
     _states: Array
     _keep: Array
-    _parameters: Array
+    _course: Course
     ended: str
     steps: int
 
     @cached_property
     def _angles(self) -> Array:
         """Somersault, tilt, twist at every point, unwrapped, (points, 3)."""
-        path = unwrapped_angles(self._states[:, :4])
-        return path if self.start.angles is None else _from(path, self.start.angles)
+        return _from(unwrapped_angles(self._states[:, :4]), self.start.angles)
 
     @cached_property
     def times(self) -> Array:
@@ -73,7 +73,10 @@ class Flight:
 
     @cached_property
     def _joints(self) -> tuple[Array, Array]:
-        return self.system.joint_states(self.states, self.times, self._parameters)
+        return self._read(self.states, self.times)
+
+    def _read(self, states: Array, times: Array) -> tuple[Array, Array]:
+        return self.system.joint_states(states, times, self._course.parameters(times[None])[0])
 
     @cached_property
     def _speeds(self) -> Array:
@@ -132,11 +135,11 @@ class Flight:
         """How it ended."""
         somersault, tilt, twist = self._angles[-1].tolist()
         state, time = self._states[-1], self._moments[-1]
-        q, _ = self.system.joint_states(state, time, self._parameters)
+        q, _ = self._read(self._states[-1:], self._moments[-1:])
         return Landing(
             float(time), somersault, tilt, twist,
             state[:4] / np.linalg.norm(state[:4]), state[4:7],
-            dict(zip(self.system.model.coordinates, q.tolist(), strict=True)), self.ended,
+            dict(zip(self.system.model.coordinates, q[0].tolist(), strict=True)), self.ended,
         )  # fmt: skip
 
     @cached_property

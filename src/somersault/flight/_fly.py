@@ -12,11 +12,13 @@ from somersault._array import Array
 from somersault._errors import SomersaultError
 from somersault.attitude import angles_from_quaternion
 from somersault.dynamics._integrator import STATUS
+from somersault.flight._columns import numbers as columns
+from somersault.flight._course import Course, solve
 from somersault.flight._flight import Flight
 from somersault.flight._numbers import number, numbers
 from somersault.flight._start import Start, start
-from somersault.flight._system import System, kinds, system
-from somersault.flight._takeoff import Takeoff, plans
+from somersault.flight._system import System, system
+from somersault.flight._takeoff import Takeoff, kinds, plans
 from somersault.model import Model, load
 
 Event = Literal["quarter twist"]
@@ -54,14 +56,19 @@ def fly(
     duration = number("duration", duration)
     times = _times(duration, samples)
     g = numbers("gravity", gravity, 3)
-    if not 1e-14 <= number("accuracy", accuracy) <= 1e-2:
-        raise SomersaultError(f"accuracy {accuracy:g} rad is out of reach; give 1e-14 to 1e-2")
-    if until not in (None, "quarter twist"):
-        raise SomersaultError(f"until {until!r} is no event; use 'quarter twist'")
+    check_ending(accuracy, until)
     joints = plans(model, takeoff.joints)
     chosen = system(model, kinds(joints), until)
     begun = start(chosen, takeoff, joints)
     return _flown(chosen, begun, takeoff, times, duration, g, accuracy)
+
+
+def check_ending(accuracy: float, until: str | None) -> None:
+    """SomersaultError unless a flight can be flown so accurately, until such an event."""
+    if not 1e-14 <= number("accuracy", accuracy) <= 1e-2:
+        raise SomersaultError(f"accuracy {accuracy:g} rad is out of reach; give 1e-14 to 1e-2")
+    if until not in (None, "quarter twist"):
+        raise SomersaultError(f"until {until!r} is no event; use 'quarter twist'")
 
 
 def _times(duration: float, samples: int | Sequence[float] | Array | None) -> Array:
@@ -89,13 +96,12 @@ def _flown(
     accuracy: float,
 ) -> Flight:
     """Solve on points that are close enough to count turns on, if need be again on closer ones."""
-    parameters = chosen.parameter_vector(begun.plans)
+    values = columns(takeoff, begun.plans)
+    course = Course(chosen, begun.plans, values, begun.q[None], 1, duration)
     first = chosen.start(begun.quaternion, begun.omega, begun.q, begun.u)
     points = _first_points(chosen, begun, np.union1d(times, [0.0, duration]))
     for _ in range(_MOST_REFINEMENTS):
-        solution = chosen.integrator.solve(
-            first[None], parameters[None], points, accuracy * TOLERANCE_PER_ACCURACY
-        )
+        solution = solve(chosen, first[None], course, points, accuracy * TOLERANCE_PER_ACCURACY)
         end, status = float(solution.end[0]), float(solution.status[0])
         flown = points < end
         states = np.concatenate([solution.states[0][flown], solution.final])
@@ -109,7 +115,7 @@ def _flown(
     keep = np.append(kept, status != 0 or times[-1] == duration)
     return Flight(
         chosen, begun, np.asarray(takeoff.velocity, float), gravity, moments, states, keep,
-        parameters, STATUS[status], int(solution.steps[0]),
+        course, STATUS[status], int(solution.steps[0]),
     )  # fmt: skip
 
 

@@ -13,27 +13,30 @@ from somersault.flight._numbers import number
 from somersault.flight._takeoff import JointTakeoff, Takeoff
 
 _MOST_BYTES = 10 * 2**20
-_NUMBER, _NUMBERS, _TEXT, _YES, _TABLE = (
+NUMBER, NUMBERS, TEXT, TEXTS, YES, TABLE = (
     "a number",
     "a list of numbers",
     "a text",
+    "a list of texts",
     "true or false",
     "a table",
 )
+WHOLE = "a whole number"
 _EITHER = "a number, or three for a ball"
 
 _TOP = {
-    "model": _TEXT, "duration": _NUMBER, "gravity": _NUMBERS, "accuracy": _NUMBER,
-    "samples": _NUMBER, "until": _TEXT, "takeoff": _TABLE, "joints": _TABLE,
+    "model": TEXT, "duration": NUMBER, "gravity": NUMBERS, "accuracy": NUMBER,
+    "samples": WHOLE, "until": TEXT, "takeoff": TABLE, "joints": TABLE,
 }  # fmt: skip
 _TAKEOFF = {
-    "somersault": _NUMBER, "tilt": _NUMBER, "twist": _NUMBER, "quaternion": _NUMBERS,
-    "spin": _NUMBER, "angular_velocity": _NUMBERS, "angular_momentum": _NUMBERS,
-    "velocity": _NUMBERS,
+    "somersault": NUMBER, "tilt": NUMBER, "twist": NUMBER, "quaternion": NUMBERS,
+    "spin": NUMBER, "tilt_rate": NUMBER, "twist_rate": NUMBER, "angular_velocity": NUMBERS,
+    "angular_momentum": NUMBERS, "velocity": NUMBERS,
 }  # fmt: skip
 _JOINT = {
-    "motion": _TEXT, "angle": _EITHER, "rate": _EITHER, "stiffness": _NUMBER,
-    "damping": _NUMBER, "rest": _NUMBER, "hold": _YES, "times": _NUMBERS, "angles": _NUMBERS,
+    "motion": TEXT, "angle": _EITHER, "rate": _EITHER, "stiffness": NUMBER,
+    "damping": NUMBER, "rest": NUMBER, "pretension": NUMBER, "hold": YES,
+    "times": NUMBERS, "angles": NUMBERS,
 }  # fmt: skip
 
 
@@ -52,33 +55,33 @@ def read_spec(path: Path) -> FlightSpec:
 
     A relative model file is looked for beside the SPEC.
     """
+    return parse_spec(read_toml(path), path.parent)
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """The tables of a TOML file; SomersaultError for a file that is none."""
     if not path.is_file():
         raise SomersaultError(f"there is no SPEC file {str(path)!r}; check the path")
     if path.stat().st_size > _MOST_BYTES:
         raise SomersaultError(f"{path.name} is larger than 10 MB, which no SPEC is; check the file")
     try:
-        given = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise SomersaultError(f"{path.name} is not TOML: {error}; correct the file") from None
-    return parse_spec(given, path.parent)
 
 
 def parse_spec(given: Mapping[str, Any], beside: Path) -> FlightSpec:
     """The flight in a SPEC's tables."""
-    _check("", given, _TOP)
+    check_keys("", given, _TOP)
     if "model" not in given:
         raise SomersaultError("model is missing; give a shipped model's name or a file")
     takeoff, joints = given.get("takeoff", {}), given.get("joints", {})
-    _check("takeoff.", takeoff, _TAKEOFF)
+    check_keys("takeoff.", takeoff, _TAKEOFF)
     for name, joint in joints.items():
         if not isinstance(joint, Mapping):
             raise SomersaultError(f"joints.{name} must be a table; write [joints.{name}]")
-        _check(f"joints.{name}.", joint, _JOINT)
+        check_keys(f"joints.{name}.", joint, _JOINT)
     samples = given.get("samples")
-    if isinstance(samples, float):
-        if not samples.is_integer():
-            raise SomersaultError(f"samples must be a whole number, and is {samples}")
-        samples = int(samples)
     return FlightSpec(
         _model(given["model"], beside),
         number("duration", given.get("duration", 1.0)),
@@ -86,7 +89,7 @@ def parse_spec(given: Mapping[str, Any], beside: Path) -> FlightSpec:
         {
             "gravity": given.get("gravity", (0.0, 0.0, 0.0)),
             "accuracy": number("accuracy", given.get("accuracy", 1e-9)),
-            "samples": samples,
+            "samples": None if samples is None else int(samples),
             "until": given.get("until"),
         },
     )
@@ -97,8 +100,8 @@ def _model(name: str, beside: Path) -> str:
     return str(file) if Path(name).suffix and file.is_file() else name
 
 
-def _check(where: str, given: Mapping[str, Any], known: Mapping[str, str]) -> None:
-    """Every key known, every value of its kind."""
+def check_keys(where: str, given: Mapping[str, Any], known: Mapping[str, str]) -> None:
+    """SomersaultError unless every key is known and every value of its kind."""
     for key, value in given.items():
         if key not in known:
             raise SomersaultError(
@@ -109,14 +112,17 @@ def _check(where: str, given: Mapping[str, Any], known: Mapping[str, str]) -> No
 
 
 def _fits(value: Any, kind: str) -> bool:
-    if kind == _TEXT:
+    if kind == TEXT:
         return isinstance(value, str)
-    if kind == _YES:
+    if kind == YES:
         return isinstance(value, bool)
-    if kind == _TABLE:
+    if kind == TABLE:
         return isinstance(value, Mapping)
     if kind == _EITHER:
-        return _fits(value, _NUMBER) or _fits(value, _NUMBERS)
-    if kind == _NUMBERS:
-        return isinstance(value, list) and all(_fits(item, _NUMBER) for item in value)
-    return isinstance(value, int | float) and not isinstance(value, bool)
+        return _fits(value, NUMBER) or _fits(value, NUMBERS)
+    if kind in (NUMBERS, TEXTS):
+        one = NUMBER if kind == NUMBERS else TEXT
+        return isinstance(value, list) and all(_fits(item, one) for item in value)
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        return False
+    return kind == NUMBER or float(value).is_integer()

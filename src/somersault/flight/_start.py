@@ -1,4 +1,4 @@
-"""From a takeoff to numbers: joint coordinates, angular velocity, pretension."""
+"""From takeoffs to numbers: joint coordinates, angular velocity, pretension."""
 
 from __future__ import annotations
 
@@ -8,19 +8,42 @@ import numpy as np
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
-from somersault.attitude import matrix_from_quaternion, quaternion_from_angles
+from somersault.attitude import (
+    angles_from_quaternion,
+    body_rates,
+    matrix_from_quaternion,
+    quaternion_from_angles,
+)
+from somersault.flight._columns import Name, Numbers, numbers, position, row
 from somersault.flight._system import System
 from somersault.flight._takeoff import JointPlan, Takeoff
-from somersault.model import Model
-from somersault.stability import spin
+from somersault.stability._spin import holding
+
+
+@dataclass(frozen=True)
+class Starts:
+    """N takeoffs in numbers.
+
+    `quaternion` (N, 4), `omega` (N, 3) in body axes, `q` (N, coordinates), `u` (N, speeds),
+    `angles` (N, 3): somersault, tilt and twist in the representation asked for. `values` are the
+    numbers with the pretension of held joints, `bodies` (N, …) those of the bodies.
+    """
+
+    quaternion: Array
+    omega: Array
+    q: Array
+    u: Array
+    angles: Array
+    values: Numbers
+    bodies: Array
 
 
 @dataclass(frozen=True)
 class Start:
-    """A takeoff in numbers: attitude, angular velocity (body axes), joints, springs.
+    """One takeoff in numbers: as `Starts`, without its first dimension.
 
-    `momentum` is the angular momentum in inertial axes, (3,); all that stays the same.
-    `angles` are the somersault, tilt and twist asked for, None where a quaternion was.
+    `momentum` is the angular momentum in inertial axes, (3,). `plans` have the pretension of held
+    joints.
     """
 
     quaternion: Array
@@ -28,71 +51,107 @@ class Start:
     q: Array
     u: Array
     momentum: Array
+    angles: Array
     plans: tuple[JointPlan, ...]
-    angles: Array | None
 
 
 def start(system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...]) -> Start:
-    """Resolve attitude, spin and pretension."""
-    quaternion = _quaternion(takeoff)
+    """One takeoff."""
+    found = starts(system, takeoff, plans, numbers(takeoff, plans), 1)
+    held = {
+        plan.joint.name: float(np.asarray(found.values["pretension", plan.joint.name]).ravel()[0])
+        for plan in plans
+        if plan.hold
+    }
+    return Start(
+        found.quaternion[0], found.omega[0], found.q[0], found.u[0], momentum(system, found)[0],
+        found.angles[0],
+        tuple(replace(p, pretension=held.get(p.joint.name, p.pretension)) for p in plans),
+    )  # fmt: skip
+
+
+def starts(
+    system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...], values: Numbers, count: int
+) -> Starts:
+    """Attitude, spin and pretension of `count` flights whose numbers are `values`."""
+    quaternion, angles = _attitude(takeoff, values, count)
     to_inertial = matrix_from_quaternion(quaternion)
-    q = np.array([x for plan in plans for x in plan.position])
-    u = np.array([x for plan in plans for x in plan.rate])
-    if takeoff.angular_velocity is not None:
-        omega = np.asarray(takeoff.angular_velocity, float)
-    elif takeoff.angular_momentum is not None:
-        of_joints = system.equations.momentum(q, _speeds(np.zeros(3), u))[:3]
-        wanted = to_inertial.T @ np.asarray(takeoff.angular_momentum, float)
-        omega = np.linalg.solve(system.equations.inertia(q), wanted - of_joints)
+    both = [position(plan, values, count) for plan in plans]
+    q = np.concatenate([np.zeros((count, 0)), *(x for x, _ in both)], 1)
+    u = np.concatenate([np.zeros((count, 0)), *(x for _, x in both)], 1)
+    bodies = row(values, [(name,) for name in system.bodies], count)
+    if ("angular_velocity", 1) in values:
+        omega = row(values, [("angular_velocity", k) for k in (1, 2, 3)], count)
+    elif ("angular_momentum", 1) in values:
+        of_joints = system.equations.momentum(q, _speeds(np.zeros((count, 3)), u), bodies)[:, :3]
+        h = row(values, [("angular_momentum", k) for k in (1, 2, 3)], count)
+        wanted = _turned(np.swapaxes(to_inertial, 1, 2), h) - of_joints
+        omega = np.linalg.solve(system.equations.inertia(q, bodies), wanted[..., None])[..., 0]
     else:
-        omega = to_inertial[1] * (takeoff.spin or 0.0)
-    h = to_inertial @ system.equations.momentum(q, _speeds(omega, u))[:3]
+        rates = row(values, [("takeoff", n) for n in ("spin", "tilt_rate", "twist_rate")], count)
+        omega = body_rates(angles, rates)
+    found = Starts(quaternion, omega, q, u, angles, values, bodies)
     if any(plan.hold for plan in plans):
-        plans = _pretensioned(system.model, takeoff, plans, h)
-    angles = None
+        found = replace(found, values=_pretensioned(system, takeoff, plans, found))
+    return found
+
+
+def momentum(system: System, begun: Starts) -> Array:
+    """Angular momentum at takeoff in inertial axes, (N, 3)."""
+    h = system.equations.momentum(begun.q, _speeds(begun.omega, begun.u), begun.bodies)[:, :3]
+    return _turned(matrix_from_quaternion(begun.quaternion), h)
+
+
+def _attitude(takeoff: Takeoff, values: Numbers, count: int) -> tuple[Array, Array]:
     if takeoff.quaternion is None:
-        angles = np.array([takeoff.somersault, takeoff.tilt, takeoff.twist], float)
-    return Start(quaternion, omega, q, u, h, plans, angles)
+        angles = row(values, [("takeoff", n) for n in ("somersault", "tilt", "twist")], count)
+        # Each angle by itself, in one piece: the same arithmetic however many there are.
+        return quaternion_from_angles(*(np.ascontiguousarray(x) for x in angles.T)), angles
+    given = np.asarray(takeoff.quaternion, float)
+    given = given / np.abs(given).max()
+    given = given / np.linalg.norm(given)
+    return np.tile(given, (count, 1)), np.tile(angles_from_quaternion(given), (count, 1))
 
 
-def _quaternion(takeoff: Takeoff) -> Array:
-    if takeoff.quaternion is not None:
-        given = np.asarray(takeoff.quaternion, float)
-        given = given / np.abs(given).max()
-        return given / np.linalg.norm(given)
-    return quaternion_from_angles(takeoff.somersault, takeoff.tilt, takeoff.twist)
+def _turned(matrix: Array, vector: Array) -> Array:
+    """matrix (N, 3, 3) times vector (N, 3), in one order of adding."""
+    return (
+        matrix[..., 0] * vector[:, None, 0]
+        + matrix[..., 1] * vector[:, None, 1]
+        + matrix[..., 2] * vector[:, None, 2]
+    )
 
 
 def _speeds(omega: Array, u: Array) -> Array:
-    return np.concatenate([omega, np.zeros(3), u])
+    return np.concatenate([omega, np.zeros_like(omega), u], 1)
 
 
 def _pretensioned(
-    model: Model, takeoff: Takeoff, plans: tuple[JointPlan, ...], momentum: Array
-) -> tuple[JointPlan, ...]:
-    """Plans whose held joints have the torque that balances the nominal spin.
+    system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...], begun: Starts
+) -> Numbers:
+    """The numbers with the torque that balances the nominal spin added to held joints' own.
 
     That is the steady spin of the takeoff pose about its principal axis nearest 2, at the rate
     asked for, or else at the one that has this angular momentum.
     """
-    angles = {name: angle for plan in plans for name, angle in _angles(plan).items()}
-    nominal = spin(model, 2, angles)
-    rate = takeoff.spin or float(np.linalg.norm(momentum)) / nominal.principal_inertias[1]
-    if rate == 0:
+    values, q, bodies = begun.values, begun.q, begun.bodies
+    shaped = [k for k in values if k[0] in ("angle", "times", "angles") or k[0] in system.bodies]
+    if any(isinstance(values[k], np.ndarray) for k in shaped):
+        inertia, torques = holding(system.model, q, system.bodies, bodies, compiled=True)
+    else:  # all in one pose
+        inertia, torques = holding(system.model, q[:1], system.bodies, bodies[:1], compiled=False)
+    if takeoff.spin is not None:
+        rate = np.asarray(values["takeoff", "spin"])
+    else:
+        h = momentum(system, begun)
+        rate = np.sqrt(h[:, 0] ** 2 + h[:, 1] ** 2 + h[:, 2] ** 2) / inertia
+    if not np.any(rate):
         held = next(plan.joint.name for plan in plans if plan.hold)
         raise SomersaultError(f"joint {held}: hold balances a spin, and this takeoff has none")
-    return tuple(
-        replace(p, pretension=nominal.holding_torques[p.joint.name] * rate**2) if p.hold else p
-        for p in plans
-    )
-
-
-def _angles(plan: JointPlan) -> dict[str, float]:
-    """A joint's takeoff pose by the names that `spin` takes."""
-    name = plan.joint.name
-    if plan.joint.kind != "ball":
-        return {name: plan.position[0]}
-    w, *vector = plan.position
-    length = float(np.linalg.norm(vector))
-    ratio = 2.0 if length == 0 else 2 * float(np.arctan2(length, w)) / length
-    return {f"{name}.{k + 1}": ratio * x for k, x in enumerate(vector)}
+    more: dict[Name, Array] = {}
+    for plan in plans:
+        if plan.hold:
+            name = plan.joint.name
+            own = torques[:, system.model.speed_slice(name).start] * rate**2
+            more["pretension", name] = own + np.asarray(values["pretension", name])
+    return {**values, **more}

@@ -21,75 +21,89 @@ from somersault.dynamics import Equations
 from somersault.dynamics._articulated import forward_dynamics
 from somersault.dynamics._integrator import Integrator
 from somersault.dynamics._springs import torques as spring_torques
-from somersault.flight._moves import path
-from somersault.flight._takeoff import JointPlan, Motion
+from somersault.dynamics._tree import tree
+from somersault.flight._path import DEGREE, polynomial
+from somersault.flight._takeoff import Motion
+from somersault.flight._watch import longest, watch
 from somersault.model import Joint, Model
 
 _BASE = 7  # quaternion and ω
 _NUMBERS = ("stiffness", "rest", "damping", "pretension")  # parameters of a joint that moves
-
-
-@dataclass(frozen=True)
-class Kind:
-    """What a joint does, without its numbers; `knots` of a prescribed path."""
-
-    motion: Motion
-    knots: int = 0
-
-
-def kinds(plans: tuple[JointPlan, ...]) -> tuple[Kind, ...]:
-    """The kinds of a set of plans: flights of equal kinds share their equations."""
-    return tuple(Kind(plan.motion, len(plan.times)) for plan in plans)
+_PATH = 1 + DEGREE + 1  # parameters of a prescribed joint: its polynomial, and since when
 
 
 @lru_cache(maxsize=32)
-def system(model: Model, joints: tuple[Kind, ...], event: str | None) -> System:
+def system(
+    model: Model,
+    joints: tuple[Motion, ...],
+    event: str | None,
+    bodies: tuple[str, ...] = (),
+    extremes: tuple[str, ...] | None = None,
+) -> System:
     """The system of a model whose joints move in these ways, compiled once."""
-    return System(model, joints, event)
+    return System(model, joints, event, bodies, extremes)
 
 
 class System:
-    """Right-hand side, layout of states and parameters, and what can be read from a state."""
+    """Right-hand side, layout of states and parameters, and what can be read from a state.
 
-    def __init__(self, model: Model, joints: tuple[Kind, ...], event: str | None) -> None:
+    `bodies` names numbers of the bodies that differ between flights, as `Equations` does.
+    `extremes`, unless it is None, are what is watched beside the turns (`_watch`).
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        joints: tuple[Motion, ...],
+        event: str | None,
+        bodies: tuple[str, ...] = (),
+        extremes: tuple[str, ...] | None = None,
+    ) -> None:
         if not model.free:
             raise SomersaultError(
                 f"{model.name} has a fixed base, so it cannot fly; give its base a free joint"
             )
         self.model, self.kinds, self.event = model, joints, event
-        moving = [j for j, k in zip(model.joints, joints, strict=True) if _moves(k)]
+        self.bodies, self.extremes = bodies, extremes
+        moving = [j for j, k in zip(model.joints, joints, strict=True) if moves_freely(k)]
         self.coordinates = sum(j.coordinates for j in moving)
         self.state = _BASE + self.coordinates + sum(j.speeds for j in moving)
-        self.parameters = sum(
+        self.parameters = len(bodies) + sum(
             _parameter_count(j, k) for j, k in zip(model.joints, joints, strict=True)
         )
 
     @cached_property
     def equations(self) -> Equations:
         """Momentum, energy and inertia of the model."""
-        return Equations(self.model)
-
-    def parameter_vector(self, plans: tuple[JointPlan, ...]) -> Array:
-        """Numbers of the joints' plans, (parameters,), in the order the equations take them."""
-        values: list[float] = []
-        for plan in plans:
-            if plan.motion == "prescribed":
-                values += [*plan.times, *plan.angles]
-            elif plan.motion == "locked":
-                values += plan.position
-            else:
-                values += [plan.stiffness, plan.rest, plan.damping, plan.pretension]
-        return np.array(values)
+        return Equations(self.model, self.bodies)
 
     @cached_property
     def integrator(self) -> Integrator:
-        """DOP853 for these equations, with the event's gauge."""
+        """DOP853 for these equations, with the event's gauge and what is watched."""
         x = ca.vertcat(self._y, self._t, self._p)
-        slope = ca.Function("slope", [x], [ca.cse(ca.densify(self._slope()))])
-        gauge = None
-        if self.event is not None:
-            gauge = ca.Function("gauge", [x], [ca.cse(ca.densify(self._gauge()))])
-        return Integrator(slope, gauge)
+
+        def function(name: str, value: Any) -> ca.Function:
+            return ca.Function(name, [x], [ca.cse(ca.densify(value))])
+
+        slope = function("slope", self._slope())
+        gauge = None if self.event is None else function("gauge", self._gauge())
+        if self.extremes is None:
+            return Integrator(slope, gauge)
+        quaternion, omega = self._attitude()
+        return Integrator(
+            slope,
+            gauge,
+            watch(self.extremes, self.quantities, self.state, self.parameters),
+            function("longest", longest(quaternion, omega)),
+        )
+
+    def quantities(self, y: Any, t: Any, p: Any) -> dict[str, Any]:
+        """Joint coordinates and rates by name, symbolic, as functions of state, time, parameters;
+        a rate's name is its joint speed's with "_rate"."""
+        x = ca.vertcat(self._y, self._t, self._p)
+        both = self._reading(ca.vertcat(y, t, p)) if x.numel() else ca.SX(0, 1)
+        names = [*self.model.coordinates, *(f"{name}_rate" for name in self.model.speeds)]
+        return {name: both[k] for k, name in enumerate(names)}
 
     # ------------------------------------------------------------------- the symbols
 
@@ -109,15 +123,15 @@ class System:
     def _joints(self) -> list[_Joint]:
         """Each joint's coordinates, speeds, known accelerations and parameters, symbolic."""
         found = []
-        q, u, p = _BASE, _BASE + self.coordinates, 0
+        q, u, p = _BASE, _BASE + self.coordinates, len(self.bodies)
         for joint, kind in zip(self.model.joints, self.kinds, strict=True):
             own = [self._p[p + k] for k in range(_parameter_count(joint, kind))]
             p += len(own)
-            if kind.motion == "prescribed":
-                knots = kind.knots
-                value, rate, acceleration = path(self._t, own[:knots], own[knots:])
+            if kind == "prescribed":
+                since, *coefficients = own
+                value, rate, acceleration = polynomial(self._t - since, coefficients)
                 found.append(_Joint(joint, [value], [rate], [acceleration], {}))
-            elif kind.motion == "locked":
+            elif kind == "locked":
                 still: list[Any] = [0.0] * joint.speeds
                 found.append(_Joint(joint, own, still, still, {}))
             else:
@@ -125,7 +139,7 @@ class System:
                 moving = [self._y[u + k] for k in range(joint.speeds)]
                 q, u = q + joint.coordinates, u + joint.speeds
                 numbers = dict(zip(_NUMBERS, own, strict=True))
-                if kind.motion == "free":
+                if kind == "free":
                     numbers["stiffness"] = 0.0
                 found.append(_Joint(joint, at, moving, None, numbers))
         return found
@@ -140,8 +154,9 @@ class System:
             f"{what}.{j.joint.name}": value for j in joints for what, value in j.numbers.items()
         }
         quaternion, omega = self._attitude()
+        numbers = {name: self._p[k] for k, name in enumerate(self.bodies)}
         alpha, _, accelerations = forward_dynamics(
-            self.equations.tree,
+            tree(self.model, numbers),
             q,
             omega,
             u,
@@ -195,7 +210,7 @@ class System:
         q_keep: list[int] = []
         u_keep: list[int] = []
         for joint, kind in zip(self.model.joints, self.kinds, strict=True):
-            if _moves(kind):
+            if moves_freely(kind):
                 where = self.model.coordinate_slice(joint.name)
                 q_keep += range(where.start, where.stop)
                 where = self.model.speed_slice(joint.name)
@@ -212,14 +227,15 @@ class _Joint:
     numbers: dict[str, Any]
 
 
-def _moves(kind: Kind) -> bool:
-    return kind.motion in ("free", "sprung")
+def moves_freely(kind: Motion) -> bool:
+    """Whether a joint is part of the state."""
+    return kind in ("free", "sprung")
 
 
-def _parameter_count(joint: Joint, kind: Kind) -> int:
-    if kind.motion == "prescribed":
-        return 2 * kind.knots
-    return joint.coordinates if kind.motion == "locked" else len(_NUMBERS)
+def _parameter_count(joint: Joint, kind: Motion) -> int:
+    if kind == "prescribed":
+        return _PATH
+    return joint.coordinates if kind == "locked" else len(_NUMBERS)
 
 
 def _with_pretension(torques: list[Any], joints: list[_Joint]) -> list[Any]:

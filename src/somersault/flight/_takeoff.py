@@ -9,11 +9,12 @@ from typing import Any, Literal
 import numpy as np
 
 from somersault._errors import SomersaultError
-from somersault.flight._moves import extremes, path
 from somersault.flight._numbers import MOST, number, numbers
+from somersault.flight._path import Path, check, moves, value
 from somersault.model import Joint, Model
 from somersault.model._mirror import mirror_pairs
 
+LIMIT_SLACK = 1e-9  # rad beyond a joint's limits that count as within
 Motion = Literal["locked", "free", "sprung", "prescribed"]
 
 
@@ -24,9 +25,10 @@ class JointTakeoff:
     "locked" holds its angle; "free" swings; "sprung" has stiffness (N m/rad), damping
     (N m s/rad) and a rest angle, or with `hold` is pretensioned so that at its takeoff angle
     it balances the nominal spin; "prescribed" moves smoothly through `angles` at `times` (s),
-    at rest at each. A ball's `angle` is a rotation vector and its `rate` an angular velocity,
-    both along its body's axes. What is None comes from the model: sprung where it has stiffness
-    or is given some, else locked at the pose in which the file draws it.
+    at rest at each. `pretension` (N m) is a constant torque beside the spring's and beside what
+    `hold` gives. A ball's `angle` is a rotation vector and its `rate` an angular velocity, both
+    along its body's axes. What is None comes from the model: sprung where it has stiffness or is
+    given some, else locked at the pose in which the file draws it.
     """
 
     motion: Motion | None = None
@@ -35,6 +37,7 @@ class JointTakeoff:
     stiffness: float | None = None
     damping: float | None = None
     rest: float | None = None
+    pretension: float = 0.0
     hold: bool = False
     times: Sequence[float] = ()
     angles: Sequence[float] = ()
@@ -45,9 +48,9 @@ class Takeoff:
     """The start of a flight. SI units and radians.
 
     Attitude by `somersault`, `tilt`, `twist`, or by a `quaternion` (body to inertial). One of
-    `spin` (rad/s about inertial axis 2, the rate of the nominal steady spin: Φ̇ = spin and
-    Θ̇ = Ψ̇ = 0 whatever the attitude), `angular_velocity` (body axes) or `angular_momentum`
-    (inertial axes, kg m²/s).
+    `spin` (rad/s about inertial axis 2, the rate of the nominal steady spin: Φ̇ = spin, and
+    Θ̇ and Ψ̇ are `tilt_rate` and `twist_rate`, whatever the attitude), `angular_velocity` (body
+    axes) or `angular_momentum` (inertial axes, kg m²/s).
     `velocity` is that of the centre of mass (m/s).
     """
 
@@ -56,6 +59,8 @@ class Takeoff:
     twist: float = 0.0
     quaternion: Sequence[float] | None = None
     spin: float | None = None
+    tilt_rate: float = 0.0
+    twist_rate: float = 0.0
     angular_velocity: Sequence[float] | None = None
     angular_momentum: Sequence[float] | None = None
     velocity: Sequence[float] = (0.0, 0.0, 0.0)
@@ -65,7 +70,7 @@ class Takeoff:
         for name, joint in self.joints.items():
             if not isinstance(joint, JointTakeoff):
                 raise SomersaultError(f"takeoff of joint {name} is {joint!r}, not a JointTakeoff")
-        for name in ("somersault", "tilt", "twist"):
+        for name in ("somersault", "tilt", "twist", "tilt_rate", "twist_rate"):
             number(f"takeoff {name}", getattr(self, name))
         for name, size in (
             ("quaternion", 4),
@@ -85,6 +90,8 @@ class Takeoff:
             raise SomersaultError(f"takeoff gives {' and '.join(given)}; give one of them")
         if self.spin is not None and number("takeoff spin", self.spin) == 0:
             raise SomersaultError("takeoff spin must be a rate in rad/s that is not zero")
+        if self.spin is None and (self.tilt_rate or self.twist_rate):
+            raise SomersaultError("takeoff tilt_rate and twist_rate go with spin; give that too")
         if self.quaternion is not None:
             if self.somersault or self.tilt or self.twist:
                 raise SomersaultError("takeoff gives both angles and a quaternion; give one")
@@ -103,10 +110,20 @@ class JointPlan:
     stiffness: float
     damping: float
     rest: float
-    pretension: float
-    hold: bool
-    times: tuple[float, ...]
-    angles: tuple[float, ...]
+    pretension: float = 0.0
+    hold: bool = False
+    times: tuple[float, ...] = ()
+    angles: tuple[float, ...] = ()
+
+    @property
+    def path(self) -> Path:
+        """How a prescribed joint moves."""
+        return moves(np.array(self.times), np.array(self.angles))
+
+
+def kinds(plans: tuple[JointPlan, ...]) -> tuple[Motion, ...]:
+    """What each joint does: flights that do the same share their equations."""
+    return tuple(plan.motion for plan in plans)
 
 
 def plans(model: Model, joints: Mapping[str, JointTakeoff]) -> tuple[JointPlan, ...]:
@@ -146,6 +163,7 @@ def _mirrored(takeoff: JointTakeoff, left: Joint, right: Joint, sign: int) -> Jo
         angle=image(takeoff.angle),
         rate=sign * number(f"joint {left.name}: rate", takeoff.rate),
         rest=image(takeoff.rest),
+        pretension=sign * number(f"joint {left.name}: pretension", takeoff.pretension),
         angles=[image(angle) or 0.0 for angle in takeoff.angles],
     )
 
@@ -156,6 +174,11 @@ def _plan(joint: Joint, given: JointTakeoff) -> JointPlan:
         if getattr(given, name) is not None:
             number(f"{where}: {name}", getattr(given, name))
     motion = _motion(joint, given, where)
+    pretension = number(f"{where}: pretension", given.pretension)
+    if pretension and motion in ("locked", "prescribed"):
+        raise SomersaultError(f"{where} is {motion}, so its pretension would do nothing")
+    if joint.kind == "ball" and pretension:
+        raise SomersaultError(f"{where} is a ball, which takes no pretension; leave it out")
     if joint.kind == "ball" and (given.rest is not None or given.hold or motion == "prescribed"):
         raise SomersaultError(
             f"{where} is a ball: it can be locked, free or sprung about the pose it is drawn in"
@@ -176,7 +199,7 @@ def _plan(joint: Joint, given: JointTakeoff) -> JointPlan:
         raise SomersaultError(f"{where}: hold is for a sprung joint without a rest of its own")
     rest = position[0] if given.hold else joint.rest if given.rest is None else given.rest
     return JointPlan(
-        joint, motion, position, rate, stiffness, damping, rest, 0.0, given.hold, (), ()
+        joint, motion, position, rate, stiffness, damping, rest, pretension, given.hold
     )
 
 
@@ -218,23 +241,26 @@ def _prescribed(joint: Joint, given: JointTakeoff, where: str) -> JointPlan:
     times = numbers(f"{where}: times", given.times)
     angles = numbers(f"{where}: angles", given.angles)
     try:
-        low, high = extremes(times, angles)
+        check(times, angles)
     except SomersaultError as mistake:
         raise SomersaultError(f"{where}: its prescribed path {mistake}") from None
-    _within(joint, low, high, where)
+    # A smooth move does not overshoot its ends.
+    _within(joint, float(angles.min()), float(angles.max()), where)
     if given.angle is not None or given.rate or given.damping:
         raise SomersaultError(f"{where} is prescribed: its angle and rate come from its path")
     knots, held = tuple(times.tolist()), tuple(angles.tolist())
-    angle, rate, _ = (float(x) for x in path(0.0, knots, held))
-    return JointPlan(joint, "prescribed", (angle,), (rate,), 0.0, 0.0, 0.0, 0.0, False, knots, held)
+    angle, rate = value(moves(times, angles), 0.0)
+    return JointPlan(
+        joint, "prescribed", (angle,), (rate,), 0.0, 0.0, 0.0, times=knots, angles=held
+    )
 
 
 def _within(joint: Joint, low: float, high: float, where: str) -> None:
     if joint.limits is None:
         return
     least, most = joint.limits
-    if low < least - 1e-9 or high > most + 1e-9:
-        worst = low if low < least - 1e-9 else high
+    if low < least - LIMIT_SLACK or high > most + LIMIT_SLACK:
+        worst = low if low < least - LIMIT_SLACK else high
         raise SomersaultError(
             f"{where}: angle {worst:g} is outside its limits {least:g} to {most:g}"
         )

@@ -41,6 +41,17 @@ def spin_matrices(equations: Equations) -> Expression:
     return Expression("spin_matrices", arguments, value)
 
 
+def spin_torques(equations: Equations) -> Expression:
+    """What holds each joint speed in the same spins: a column of `spin_matrices` alone."""
+    model = equations.model
+    q = ca.SX.sym("q", len(model.coordinates))
+    axis = ca.SX.sym("axis", 3)
+    still = ca.SX.zeros(3 + len(model.speeds))
+    loads = ca.vertcat(*_loads(equations, q, axis, still, still, still)[3:])
+    arguments = {"q": q, "axis": axis, "parameters": equations._p}
+    return Expression("spin_torques", arguments, loads)
+
+
 def _loads(equations: Equations, q: Any, axis: Any, x: Any, dx: Any, ddx: Any) -> list[Any]:
     """Moment about the base and joint torques that the deviated motion would need.
 

@@ -19,13 +19,14 @@ from somersault.dynamics import Equations, Kernel
 from somersault.model import Model
 from somersault.model._load import load
 from somersault.model._pose import pose as posed
-from somersault.stability._matrices import spin_matrices
+from somersault.stability._matrices import spin_matrices, spin_torques
 
 if TYPE_CHECKING:
     from somersault.stability._linear import LinearSpin
 
 Axis = Literal["minor", "intermediate", "major", 1, 2, 3]
 _WORTH_COMPILING = 8  # samples
+_ALONG = 1e-15  # of the inertia: products below it leave body axis 2 a principal axis
 _RANK = {"minor": 0, "intermediate": 1, "major": 2}
 
 
@@ -298,3 +299,43 @@ def evaluated(
         rows[..., 3:, -2],
         rows[..., 3:, -1],
     )
+
+
+def holding(
+    model: Model,
+    q: Array,
+    parameters: tuple[str, ...] = (),
+    values: Array | None = None,
+    *,
+    compiled: bool,
+) -> tuple[Array, Array]:
+    """Of the steady spins about the principal axes nearest body axis 2, at poses q (N, …):
+    inertia (N,), kg m², and what holds each joint speed at Ω = 1 rad/s, (N, speeds)."""
+    whole = composite_inertia(model, q, parameters, values)
+    axis = np.tile([0.0, 1.0, 0.0], (len(q), 1))
+    inertia = whole[:, 1, 1].copy()
+    tilted = np.abs(whole[:, 0, 1]) + np.abs(whole[:, 1, 2]) > _ALONG * inertia
+    if tilted.any():  # elsewhere body axis 2 is a principal axis as it is
+        about = principal(whole[tilted])
+        inertia[tilted], axis[tilted] = about.inertias[:, 1], about.axes[..., 1]
+    require_inertia(model, np.linalg.eigvalsh(whole[:1]))
+    values = np.zeros((1, 0)) if values is None else values
+    parts = [np.broadcast_to(x, (len(q), x.shape[-1])) for x in (q, axis, values)]
+    joined = np.concatenate(parts, 1)
+    if compiled:
+        return inertia, _torque_kernel(model, parameters)(joined)
+    function = _torque_function(model, parameters)
+    return inertia, np.stack([np.asarray(function(row)).ravel() for row in joined])
+
+
+@lru_cache(maxsize=16)
+def _torque_function(model: Model, parameters: tuple[str, ...]) -> Any:
+    expression = spin_torques(_equations(model, parameters))
+    joined = ca.vertcat(*expression.arguments.values())
+    return ca.Function("spin_torques", [joined], [ca.densify(expression.value)])
+
+
+@lru_cache(maxsize=16)
+def _torque_kernel(model: Model, parameters: tuple[str, ...]) -> Kernel:
+    equations = _equations(model, parameters)
+    return equations.kernel(spin_torques(equations))

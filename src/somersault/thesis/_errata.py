@@ -57,6 +57,19 @@ ERRATA = (
         "The table's own masses give 0.0622 m and I_sh = 3.02e-4 kg m², which §5.5 uses; 0.0572 m "
         "would make it 2.67e-4.",
     ),
+    Erratum(
+        "§5.2.1",
+        "Table 5.2.1, Figure 5.2.1, Φ_s0 = 0.0",
+        "Table 5.1, Figure 5-2, Γ_s0 = 0.0",
+        "The table, the picture and the angle that are meant.",
+    ),
+    Erratum(
+        "§5.5, Figure 5-5",
+        "0.7 ≤ K_sh ≤ 1.4 stabilises the doll at Γ = 1.57 rad",
+        "0.63 ≤ K_sh ≤ 1.51",
+        "With rl3 = 0.0622 m. The misprinted 0.0572 m gives 0.645 to 1.447, which on points 0.1 "
+        "apart is 0.7 to 1.4.",
+    ),
     Erratum("§5.5", "I_sh in N m²", "kg m²", "The unit of an inertia."),
     Erratum("A.4", "n = L1/L3", "n = L4/L3", "Equation A.25 divided through by L1 and L3."),
     Erratum(

@@ -5,6 +5,8 @@ from __future__ import annotations
 from somersault.thesis._arm_shape import fig_4_20
 from somersault.thesis._asymmetry import fig_4_13
 from somersault.thesis._damping import energy, fig_4_7
+from somersault.thesis._doll import table_5_1
+from somersault.thesis._doll_compared import fig_5_2, fig_5_3, fig_5_5
 from somersault.thesis._edges import sec_4_3
 from somersault.thesis._entries import Entry
 from somersault.thesis._equations_2 import equations_2
@@ -59,4 +61,8 @@ ENTRIES = (
     Entry("fig4-18", "Figure 4-18: nine stiffnesses", "ch4", fig_4_18),
     Entry("fig4-19", "Figure 4-19: nine sizes of arm", "ch4", fig_4_19),
     Entry("fig4-20", "Figure 4-20: the simplest model with arms at an angle", "ch4", fig_4_20),
+    Entry("table5-1", "Table 5.1: the doll's body parameters", "ch5", table_5_1),
+    Entry("fig5-2", "Figure 5-2: inertia ratios of doll and human", "ch5", fig_5_2),
+    Entry("fig5-3", "Figure 5-3: how large the doll's arms are", "ch5", fig_5_3),
+    Entry("fig5-5", "Figure 5-5: springs that stabilise the doll", "ch5", fig_5_5),
 )

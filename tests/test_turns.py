@@ -1,4 +1,4 @@
-"""Many flights at once, pairs by one name, turns by the singularity, and what is refused."""
+"""Pairs by one name, turns by the singularity, and what is refused."""
 
 import json
 from pathlib import Path
@@ -12,32 +12,6 @@ from somersault.attitude import angle_rates
 from somersault.cli import main
 
 ARM = so.JointTakeoff(motion="sprung", angle=1.4, rate=0.1, stiffness=34.48, hold=True)
-
-
-def test_landings_are_those_of_single_flights() -> None:
-    starts = [
-        so.Takeoff(tilt=t, twist=w, spin=8.64, joints={"shoulder": ARM})
-        for t, w in ((0.0, 0.0), (0.01, 0.0), (0.3, 0.2), (0.0, -0.4))
-    ]
-    many = so.landings("furrer", starts, 3.0, until="quarter twist")
-    for index, takeoff in enumerate(starts):
-        one = so.fly("furrer", takeoff, 3.0, samples=2, until="quarter twist").landing
-        assert str(many.ended[index].values) == one.ended
-        assert float(many.time[index]) == pytest.approx(one.time, abs=1e-9)
-        np.testing.assert_allclose(
-            many.angular_velocity[index], one.angular_velocity, rtol=0, atol=1e-6
-        )
-        assert float(many.tilt[index]) == pytest.approx(one.tilt, abs=1e-7)
-    assert set(many.ended.values.tolist()) == {"duration", "event"}
-
-
-def test_landings_need_alike_joints() -> None:
-    still = so.Takeoff(spin=3.0)
-    moving = so.Takeoff(spin=3.0, joints={"shoulder": ARM})
-    with pytest.raises(so.SomersaultError, match="different things"):
-        so.landings("furrer", [still, moving], 1.0)
-    with pytest.raises(so.SomersaultError, match="at least one"):
-        so.landings("furrer", [], 1.0)
 
 
 def test_a_pair_by_its_common_name_is_mirrored() -> None:

@@ -1,0 +1,126 @@
+"""`somersault ensemble SPEC.toml`: many flights."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from somersault.cli._pictures import PICTURES, check_picture, save_picture
+
+NAME = "ensemble"
+HELP = "Many flights that differ in what a TOML file varies; goes on where it was stopped."
+EXAMPLES = """examples:
+  somersault ensemble examples/layout_map.toml --out map.zarr
+  somersault ensemble examples/layout_map.toml --out map.nc --plot map.png
+  somersault ensemble SPEC.toml --out map.zarr --workers 2
+  somersault ensemble SPEC.toml --out map.zarr --scheduler tcp://10.0.0.1:8786
+
+A SPEC is that of `somersault fly`, and what varies:
+  [vary.arm_angle]
+  sets = "joints.shoulder.angle"       # or adds_to; a number of the takeoff, or several
+  values = {from = 0.4, to = 2.2, count = 19}
+  [vary.tilt]
+  adds_to = "takeoff.tilt"
+  normal = [0.0, 0.05]                 # or uniform, triangular, lognormal, truncated_normal
+  [sample]
+  size = 1000
+  seed = 1
+  sequence = "sobol"                   # or random, halton, saltelli
+  [report]
+  quantities = ["somersaults", "twist", "landing_error"]
+  extremes = ["tilt"]
+  [target]
+  somersault = 6.2832
+  tolerance = 0.1"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.add_argument("spec", type=Path, metavar="SPEC.toml", help="the flights")
+    parser.add_argument(
+        "--out", type=Path, metavar="MAP.zarr",
+        help="write the dataset: a Zarr store, resumed if it is there, or .nc (NetCDF)",
+    )  # fmt: skip
+    parser.add_argument("--threads", type=int, metavar="N", help="threads (default: one a core)")
+    parser.add_argument(
+        "--workers", type=int, metavar="N", help="processes of dask.distributed on this machine"
+    )
+    parser.add_argument(
+        "--scheduler", metavar="ADDRESS", help="the dask scheduler whose workers fly"
+    )
+    parser.add_argument("--chunk", type=int, metavar="N", help="flights in a chunk")
+    parser.add_argument(
+        "--plot", type=Path, metavar="FILE", help=f"draw what is reported first: {PICTURES}"
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON for programs")
+
+
+def run(chosen: argparse.Namespace) -> None:
+    """Fly what is left to fly, and print what it all adds up to."""
+    from somersault.ensembles._ensemble import carried_out
+    from somersault.ensembles._spec import read_ensemble
+    from somersault.ensembles._summary import summary
+
+    if chosen.plot is not None:
+        check_picture("--plot", chosen.plot)
+    spec = read_ensemble(chosen.spec)
+    found = carried_out(
+        spec.plan, chosen.out, chosen.chunk, chosen.threads, chosen.workers, chosen.scheduler,
+        progress=sys.stderr.isatty(),
+    )  # fmt: skip
+    record = {"model": spec.plan.model.name, "dimensions": spec.plan.dims}
+    record |= summary(found.dataset, spec.tolerance)
+    drawn = [n for n, v in spec.plan.vary.items() if v.distribution is not None]
+    if chosen.plot is not None:
+        save_picture(chosen.plot, found.plot())
+        record["picture"] = str(chosen.plot)
+    if chosen.out is not None:
+        record["dataset"] = str(chosen.out)
+    if len(drawn) > 1 and 64 <= spec.plan.size <= _MOST_RANKED and "sample" in spec.plan.dims:
+        record["sensitivity"] = _ranking(found, spec.plan.report.quantities)
+    print(json.dumps(record) if chosen.json else "\n".join(_page(record)))
+
+
+_MOST_RANKED = 100_000
+
+
+def _ranking(found: Any, names: tuple[str, ...]) -> dict[str, dict[str, float]]:
+    """Sobol' indices of what is reported, averaged over the grids."""
+    result = {}
+    for name in names:
+        indices = found.sensitivity(name)
+        which = "total" if "total" in indices else "first_order"
+        values = indices[which]
+        mean = values.mean([d for d in values.dims if d != "input"])
+        result[name] = {
+            str(i): float(v) for i, v in zip(mean["input"].values, mean.values, strict=True)
+        }
+    return result
+
+
+def _page(record: dict[str, Any]) -> list[str]:
+    shape = " x ".join(f"{name} {n}" for name, n in record["dimensions"].items())
+    ended = ", ".join(f"{word} {n:,}" for word, n in record["ended"].items())
+    lines = [f"{record['model']}: {record['flights']:,} flights ({shape})", f"  ended: {ended}"]
+    for name, row in record["reported"].items():
+        unit = "" if row["unit"] == "1" else f" {row['unit']}"
+        lines.append(
+            f"  {name}: median {row['median']:.4g}{unit}, 5 % below {row['5%']:.4g}, "
+            f"5 % above {row['95%']:.4g}"
+        )
+    if "within_tolerance" in record:
+        share = record["within_tolerance"]
+        lines.append(
+            f"  landing error within {share['tolerance']:g} rad: {100 * share['fraction']:.1f} % "
+            f"({100 * share['low']:.1f} to {100 * share['high']:.1f} % with 95 % confidence)"
+        )
+    for name, row in record.get("sensitivity", {}).items():
+        ranks = ", ".join(f"{who} {value:.2f}" for who, value in row.items())
+        lines.append(f"  variance of {name} from: {ranks}")
+    for key in ("dataset", "picture"):
+        if key in record:
+            lines.append(f"  {key}: {record[key]}")
+    return lines

@@ -1,0 +1,31 @@
+"""Pictures that commands write."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from somersault._errors import SomersaultError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+PICTURES = ".png or .svg"
+
+
+def check_picture(option: str, path: Path) -> None:
+    """SomersaultError unless pictures can be written to a file of that name."""
+    if path.suffix.lower() not in (".png", ".svg"):
+        raise SomersaultError(f"{option} {path} is no picture; let it end in {PICTURES}")
+
+
+def save_picture(path: Path, made: Figure) -> None:
+    """Write a picture by its file's ending, the same bytes on every day."""
+    from somersault._files import write
+
+    held = io.BytesIO()
+    ending = path.suffix.lower()[1:]
+    plain = {"Date": None, "Creator": None} if ending == "svg" else {"Software": None}
+    made.savefig(held, format=ending, dpi=160, metadata=plain)
+    write(path, held.getvalue())

@@ -1,0 +1,153 @@
+"""The chunks of an ensemble on the workers of dask.distributed.
+
+A task is (plan, chunk). A worker that sees the store writes the chunk itself; one that does not
+sends its rows to the program, which writes them. Chunks of a worker that dies are given to
+others; what the program had finished stays finished if it, or the scheduler, dies.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from somersault._array import Array
+from somersault._errors import SomersaultError
+from somersault.dynamics._kernel import cores
+from somersault.ensembles import _run, _store
+from somersault.ensembles._plan import Plan
+from somersault.ensembles._store import Layout
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+_PATIENCE = 10.0  # s to find a scheduler
+_WAIT_FOR_WORKERS = 60.0
+_AHEAD = 2  # tasks a worker has before it
+_DEATHS = 20  # of workers in one chunk, after which it is the chunk's fault
+
+
+def on_cluster(
+    plan: Plan, cut: Layout, chunks: list[int], put: _run.Put, told: _run.Told,
+    file: Path | None, threads: int | None, workers: int | None, scheduler: str | None,
+) -> None:  # fmt: skip
+    """Fly chunks on processes of this machine, or on those of a scheduler."""
+    import dask
+    from distributed import Client, LocalCluster
+
+    quiet = {"distributed.scheduler.allowed-failures": _DEATHS, "distributed.comm.retry.count": 0}
+    with dask.config.set(quiet):
+        if scheduler is not None:
+            with _client(scheduler) as client:
+                _carry(client, plan, cut, chunks, put, told, file, threads, scheduler)
+            return
+        assert workers is not None
+        each = threads or max(1, cores() // workers)
+        with LocalCluster(
+            n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None,
+            host="127.0.0.1", silence_logs="CRITICAL",
+        ) as cluster, Client(cluster) as client:  # fmt: skip
+            _carry(client, plan, cut, chunks, put, told, file, each, "this machine")
+
+
+def _client(address: str) -> Client:
+    from distributed import Client
+
+    try:
+        return Client(address, timeout=_PATIENCE)
+    except (OSError, TimeoutError, ValueError) as trouble:
+        raise SomersaultError(
+            f"no scheduler answers at {address!r} ({type(trouble).__name__}); start one with "
+            "'dask scheduler' and give its address, like tcp://127.0.0.1:8786"
+        ) from None
+
+
+def _carry(
+    client: Client, plan: Plan, cut: Layout, chunks: list[int], put: _run.Put, told: _run.Told,
+    file: Path | None, threads: int | None, where: str,
+) -> None:  # fmt: skip
+    from distributed import as_completed
+    from distributed.scheduler import KilledWorker
+
+    try:
+        client.wait_for_workers(1, timeout=_WAIT_FOR_WORKERS)
+        _check_engines(client, plan)
+        shared = client.scatter(plan, broadcast=False, hash=False)
+        path = None if file is None else str(file.resolve())
+        ahead = iter(chunks)
+
+        def begin(count: int) -> list[Any]:
+            return [
+                client.submit(_chunk, shared, cut, k, path, threads, pure=False)
+                for k in islice(ahead, count)
+            ]
+
+        running = as_completed(begin(_AHEAD * len(client.scheduler_info(n_workers=-1)["workers"])))
+        for future in running:
+            k, rows = future.result()
+            if rows is not None:
+                put(k, rows)
+            told(cut.size(k))
+            future.release()
+            for more in begin(1):
+                running.add(more)
+    except KilledWorker:
+        raise SomersaultError(
+            f"a chunk has killed {_DEATHS} workers at {where}, perhaps for want of memory; give a "
+            "smaller --chunk; what is finished is kept"
+        ) from None
+    except SomersaultError:
+        raise
+    except (OSError, TimeoutError, asyncio.CancelledError) as trouble:
+        if isinstance(trouble, OSError) and trouble.errno is not None and trouble.filename:
+            raise  # a full disk, say
+        raise SomersaultError(
+            f"the scheduler at {where} has gone, or has no workers; what is finished is kept: run "
+            "the same command again to go on"
+        ) from None
+
+
+def _check_engines(client: Client, plan: Plan) -> None:
+    """Refuse workers that would compute other last digits."""
+    ours = plan.engines
+    for address, theirs in client.run(_engines, tuple(ours)).items():
+        for name, version in ours.items():
+            if theirs[name] != version:
+                raise SomersaultError(
+                    f"the worker {address} has {name} {theirs[name]}, and this program {version}; "
+                    "install the same on both"
+                )
+
+
+def _engines(names: tuple[str, ...]) -> dict[str, str]:
+    from importlib.metadata import PackageNotFoundError, version
+
+    found = {}
+    for name in names:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = "(none)"
+    return found
+
+
+def _chunk(
+    plan: Plan, cut: Layout, k: int, path: str | None, threads: int | None
+) -> tuple[int, Mapping[str, Array] | None]:
+    """Fly chunk k on a worker; its rows, unless it could write them itself."""
+    rows = _run.flown(plan, cut, k, threads or cores())
+    if path is None or not _is_here(path, plan):
+        return k, rows
+    _store.write(Path(path), plan, cut, k, rows)
+    return k, None
+
+
+def _is_here(path: str, plan: Plan) -> bool:
+    """Whether this worker sees the store."""
+    try:
+        _store.resume(Path(path), plan)
+    except (SomersaultError, OSError):
+        return False
+    return True

@@ -1,0 +1,224 @@
+"""`ensemble`: many flights of one maneuver, and what became of them."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from somersault._errors import SomersaultError
+from somersault._files import write as write_file
+from somersault.ensembles import _run, _store
+from somersault.ensembles._plan import Plan, check
+from somersault.ensembles._report import Report
+from somersault.ensembles._vary import Vary
+from somersault.flight._fly import Event, check_ending
+from somersault.flight._numbers import number
+from somersault.flight._takeoff import Takeoff
+from somersault.model import Model, load
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+_CHUNK = 65_536  # flights
+_LEAST_CHUNK = 8_192
+_PARTS = 8  # that a small ensemble is cut into
+_CHUNK_BYTES = 2**26
+_MEMORY_BYTES = 2**31  # that a dataset without a store may take
+
+
+@dataclass(frozen=True, eq=False)
+class Ensemble:
+    """Flights that differ in what was varied: `dataset` over the varied quantities."""
+
+    dataset: xr.Dataset
+
+    @staticmethod
+    def open(path: str | Path) -> Ensemble:
+        """An ensemble that was written before, whole or in part; values are read when used."""
+        file = Path(path)
+        if not file.exists():
+            raise SomersaultError(f"there is no ensemble {str(path)!r}; check the path")
+        return Ensemble(_store.opened(file))
+
+    def fraction(
+        self, good: Any = None, tolerance: float | None = None, **options: Any
+    ) -> xr.Dataset:
+        """The share of flights that came out right, with its confidence interval: see
+        `ensembles.fraction`. `good` is a true-or-false array over the flights; without it those
+        whose landing_error is at most `tolerance`."""
+        from somersault.ensembles._summary import fraction, within
+
+        chosen = within(self.dataset, tolerance) if good is None else good
+        return fraction(chosen, self.dataset["ended"], **options)
+
+    def quantiles(
+        self, name: str, q: Sequence[float] = (0.05, 0.5, 0.95), **options: Any
+    ) -> xr.Dataset:
+        """Quantiles of a reported quantity over the flights that did not fail: see
+        `ensembles.quantiles`."""
+        from somersault.ensembles._summary import quantiles
+
+        return quantiles(self.dataset, name, q, **options)
+
+    def sensitivity(self, name: str, **options: Any) -> xr.Dataset:
+        """How much of the variance of a reported quantity each drawn one makes, in order: see
+        `ensembles.sensitivity`."""
+        from somersault.ensembles._sensitivity import sensitivity
+
+        return sensitivity(self.dataset, name, **options)
+
+    def plot(self, name: str | None = None) -> Figure:
+        """A picture of a reported quantity: a map over two grids, a band over one, or a
+        histogram."""
+        from somersault.ensembles._plot import plot
+
+        return plot(self.dataset, name)
+
+
+def ensemble(
+    model: str | Model,
+    takeoff: Takeoff | None = None,
+    duration: float = 1.0,
+    vary: Mapping[str, Vary] | None = None,
+    *,
+    size: int | None = None,
+    seed: int = 0,
+    sequence: str = "random",
+    report: Report | Sequence[str] = Report.quantities,
+    accuracy: float = 1e-7,
+    until: Event | None = None,
+    out: str | Path | None = None,
+    chunk: int | None = None,
+    threads: int | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    progress: bool = False,
+) -> Ensemble:
+    """Many flights of a maneuver, differing in what is varied.
+
+    `vary` names the varied quantities (`Vary`). Grids span dimensions of their own; everything
+    drawn runs along `sample`, `size` of them, from the `seed`, as a "random", "sobol", "halton"
+    or "saltelli" `sequence`. `report` is a `Report`, or the names of its quantities. `accuracy` and
+    `until` are those of `fly`.
+
+    Without `out` the result stays in memory. A path that ends in .nc gets it as NetCDF in the
+    end; any other is a Zarr store, which fills chunk by chunk (`chunk` flights each), and which
+    the same call, stopped however, goes on with. Chunks are flown on `threads` (one a core), or
+    on `workers` processes of dask.distributed, or by those of the `scheduler` at an address; the
+    numbers are the same, bit for bit. Raises SomersaultError for what does not fit, and for a
+    store of another specification.
+    """
+    planned = plan(model, takeoff, duration, vary, size, seed, sequence, report, accuracy, until)
+    return carried_out(planned, out, chunk, threads, workers, scheduler, progress)
+
+
+def plan(
+    model: str | Model, takeoff: Takeoff | None, duration: float,
+    vary: Mapping[str, Vary] | None, size: int | None, seed: int, sequence: str,
+    report: Report | Sequence[str], accuracy: float, until: str | None,
+) -> Plan:  # fmt: skip
+    """What `ensemble` would fly; SomersaultError for what does not fit."""
+    if number("duration", duration) <= 0:
+        raise SomersaultError(f"duration {duration:g} s is no flight; give a positive number")
+    check_ending(accuracy, until)
+    if takeoff is not None and not isinstance(takeoff, Takeoff):
+        raise SomersaultError(f"a takeoff is a somersault.Takeoff, and not {takeoff!r}")
+    told = report if isinstance(report, Report) else Report(tuple(report))
+    varied = dict(vary or {})
+    for what, value in (("sample.size", size), ("sample.seed", seed)):
+        if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
+            raise SomersaultError(f"{what} must be a whole number, and is {value!r}")
+    if size is None:
+        listed = [
+            len(v.samples) for v in varied.values() if isinstance(v, Vary) and v.samples is not None
+        ]
+        size = listed[0] if listed else 1
+    made = Plan(
+        load(model), takeoff or Takeoff(), float(duration), varied, told, size, seed, sequence,
+        float(accuracy), until,
+    )  # fmt: skip
+    check(made)
+    return made
+
+
+def carried_out(
+    plan: Plan, out: str | Path | None = None, chunk: int | None = None,
+    threads: int | None = None, workers: int | None = None, scheduler: str | None = None,
+    progress: bool = False,
+) -> Ensemble:  # fmt: skip
+    """Fly a plan, or what is left of it."""
+    for what, value in (("chunk", chunk), ("threads", threads), ("workers", workers)):
+        if value is not None and (isinstance(value, bool) or not 1 <= value <= 10**9):
+            raise SomersaultError(f"{what} must be a whole number from 1, and is {value!r}")
+    if workers is not None and scheduler is not None:
+        raise SomersaultError("workers and scheduler are both given; give one of them")
+    cut = _store.layout(plan.dims, chunk or _chunk(plan))
+    file = None if out is None else Path(out)
+    if file is None or file.suffix.lower() == ".nc":
+        return _in_memory(plan, cut, file, threads, workers, scheduler, progress)
+    if file.exists():
+        cut = _store.resume(file, plan)
+    else:
+        _store.create(file, plan, cut)
+    done = _store.finished(file, cut)
+    left = [k for k in range(len(cut)) if k not in done]
+
+    def put(k: int, rows: Mapping[str, Any]) -> None:
+        _store.write(file, plan, cut, k, rows)
+
+    _fly(plan, cut, left, put, file, threads, workers, scheduler, progress)
+    _store.tidy(file)
+    return Ensemble(_store.opened(file))
+
+
+def _fly(
+    plan: Plan, cut: _store.Layout, left: list[int], put: _run.Put, file: Path | None,
+    threads: int | None, workers: int | None, scheduler: str | None, shown: bool,
+) -> None:  # fmt: skip
+    remaining = sum(map(cut.size, left))
+    with _run.progress(plan.count, plan.count - remaining, shown) as told:
+        if left and (workers is not None or scheduler is not None):
+            from somersault.ensembles._cluster import on_cluster
+
+            on_cluster(plan, cut, left, put, told, file, threads, workers, scheduler)
+        else:
+            _run.on_threads(plan, cut, left, put, told, threads)
+
+
+def _in_memory(
+    plan: Plan, cut: _store.Layout, file: Path | None, threads: int | None,
+    workers: int | None, scheduler: str | None, shown: bool,
+) -> Ensemble:  # fmt: skip
+    if plan.count * _bytes_told(plan) > _MEMORY_BYTES:
+        raise SomersaultError(
+            f"{plan.count:,} flights would fill the memory; give --out a Zarr store, MAP.zarr"
+        )
+    data, put = _store.gathered(plan, cut)
+    _fly(plan, cut, list(range(len(cut))), put, None, threads, workers, scheduler, shown)
+    if file is not None:
+        with tempfile.TemporaryDirectory() as folder:
+            whole = os.path.join(folder, "ensemble.nc")
+            data.to_netcdf(whole, engine="h5netcdf")
+            write_file(file, Path(whole).read_bytes())
+    return Ensemble(data)
+
+
+def _bytes_told(plan: Plan) -> int:
+    kept = plan.report
+    samples = kept.samples if kept.history else 0
+    return 8 * (4 + len(kept.quantities) + 2 * len(kept.extremes) + samples * len(kept.history))
+
+
+def _chunk(plan: Plan) -> int:
+    """Flights in a chunk: seconds of work, some megabytes."""
+    samples = plan.report.samples if plan.report.history else 0
+    chosen = plan.system
+    rows = 3 + 2 * len(plan.report.extremes) + chosen.state
+    doubles = 12 * (rows + chosen.parameters) + samples * (3 * rows + 2 * chosen.parameters)
+    fitting = max(_CHUNK_BYTES // (8 * doubles), 64)
+    return min(fitting, _CHUNK, max(_LEAST_CHUNK, -(-plan.count // _PARTS)))

@@ -1,0 +1,281 @@
+"""A whole ensemble as a value: what is flown, what varies, what is told."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from importlib.metadata import version
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from somersault._array import Array
+from somersault._errors import SomersaultError
+from somersault.dynamics._tree import parameter_value
+from somersault.ensembles import _report, _vary
+from somersault.ensembles._report import Report
+from somersault.ensembles._targets import Target, body_names, check_apart, moved, targets
+from somersault.ensembles._vary import Vary
+from somersault.flight._columns import Name, numbers, sound
+from somersault.flight._course import Course, solve
+from somersault.flight._fly import TOLERANCE_PER_ACCURACY
+from somersault.flight._start import starts
+from somersault.flight._system import System, system
+from somersault.flight._takeoff import JointPlan, Takeoff, kinds, plans
+from somersault.model import Model
+
+SAMPLE = "sample"
+_MOST = 10**11  # flights
+_MOST_LISTED = 10_000
+_TOGETHER = 8_192  # flights whose numbers stay near the processor
+_ENGINES = ("somersault", "casadi", "llvmlite", "numpy", "scipy")
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """Everything that decides the numbers of an ensemble, and nothing else.
+
+    Flights are numbered along the dimensions in `dims`, the last running fastest.
+    """
+
+    model: Model
+    takeoff: Takeoff
+    duration: float
+    vary: Mapping[str, Vary]
+    report: Report
+    size: int
+    seed: int
+    sequence: str
+    accuracy: float
+    until: str | None
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in self.__dataclass_fields__}
+
+    @cached_property
+    def joints(self) -> tuple[JointPlan, ...]:
+        """What each joint does."""
+        return plans(self.model, self.takeoff.joints)
+
+    @cached_property
+    def _nominal(self) -> dict[Name, float | Array]:
+        return numbers(self.takeoff, self.joints)
+
+    @cached_property
+    def targets(self) -> dict[str, tuple[Target, ...]]:
+        """The numbers that each varied quantity moves."""
+        return {
+            name: targets(self.model, self._nominal, f"vary.{name}", vary)
+            for name, vary in self.vary.items()
+        }
+
+    @cached_property
+    def bodies(self) -> tuple[str, ...]:
+        """Numbers of the bodies that are varied."""
+        return body_names(self.targets)
+
+    @property
+    def system(self) -> System:
+        """The equations, shared with every plan that has the same."""
+        return system(
+            self.model, kinds(self.joints), self.until, self.bodies, tuple(self.report.extremes)
+        )
+
+    @property
+    def dims(self) -> dict[str, int]:
+        """Dimensions and their lengths."""
+        found = {name: len(v.grid) for name, v in self.vary.items() if v.grid is not None}
+        if len(found) < len(self.vary) or self.size > 1 or not found:
+            found[SAMPLE] = self.size
+        return found
+
+    @property
+    def count(self) -> int:
+        """How many flights."""
+        return math.prod(self.dims.values())
+
+    @cached_property
+    def values(self) -> dict[Name, float | Array]:
+        """The numbers of the takeoff before anything is varied."""
+        return {**self._nominal, **{(n,): parameter_value(self.model, n) for n in self.bodies}}
+
+    def coordinate(self, name: str, places: Array) -> Array:
+        """Values of a varied quantity at places along its dimension."""
+        grid = self.vary[name].grid
+        if grid is not None:
+            return grid[places]
+        return self.drawn(places)[name]
+
+    def drawn(self, places: Array) -> dict[str, Array]:
+        """Values of what runs along `sample`, at rising places."""
+        along = {n: v for n, v in self.vary.items() if v.grid is None}
+        return _vary.draws(along, self.sequence, self.seed, places)
+
+    def varied(self, first: int, last: int) -> dict[str, Array]:
+        """Every varied quantity of flights first … last − 1."""
+        dims = self.dims
+        at = dict(
+            zip(dims, np.unravel_index(np.arange(first, last), tuple(dims.values())), strict=True)
+        )
+        found = {n: v.grid[at[n]] for n, v in self.vary.items() if v.grid is not None}
+        if len(found) < len(self.vary):
+            places, back = np.unique(at[SAMPLE], return_inverse=True)
+            found |= {name: x[back] for name, x in self.drawn(places).items()}
+        return found
+
+    def fly(self, first: int, last: int) -> dict[str, Array]:
+        """The variables of flights first … last − 1.
+
+        Each flight's numbers depend on nothing but its own place.
+        """
+        edges = [*range(first, last, _TOGETHER), last]
+        parts = [self._fly(a, b) for a, b in pairwise(edges)]
+        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+    def _fly(self, first: int, last: int) -> dict[str, Array]:
+        count, chosen = last - first, self.system
+        given = self.varied(first, last)
+        values = moved(self.values, self.vary, self.targets, given)
+        good = sound(self.joints, values, count)
+        if not good.all():  # stand-ins, which are struck out again
+            nominal = self.values
+            values = {
+                n: np.where(good, x, nominal[n]) if isinstance(x, np.ndarray) else x
+                for n, x in values.items()
+            }
+        begun = starts(chosen, self.takeoff, self.joints, values, count)
+        course = Course(chosen, self.joints, begun.values, begun.q, count, self.duration)
+        state = chosen.start(begun.quaternion, begun.omega, begun.q, begun.u)
+        zero = course.parameters(np.zeros((count, 1)))[:, 0]
+        watched = _report.first_watched(self.report, chosen, begun.angles, state, zero)
+        times = self.report.times(self.duration)
+        found = solve(chosen, state, course, times, self.accuracy * TOLERANCE_PER_ACCURACY, watched)
+        final = course.parameters(found.end[:, None])[:, 0]
+        along = None
+        if self.report.history:
+            along = course.parameters(np.broadcast_to(times, (count, len(times))))
+        return _report.told(self.report, chosen, found, begun.angles, good, final, along, times)
+
+    @cached_property
+    def specification(self) -> dict[str, Any]:
+        """All that decides the numbers, as plain data."""
+        takeoff = asdict(self.takeoff)
+        return {
+            "model": self.model.name,
+            "model_sha256": hashlib.sha256(repr(self.model).encode()).hexdigest(),
+            "duration": self.duration,
+            "until": self.until,
+            "accuracy": self.accuracy,
+            "takeoff": _plain(takeoff),
+            "vary": {name: _plain(asdict(v) | _listed(v)) for name, v in self.vary.items()},
+            "sample": {"size": self.size, "seed": self.seed, "sequence": self.sequence},
+            "report": _plain(asdict(self.report)),
+        }
+
+    @property
+    def engines(self) -> dict[str, str]:
+        """Versions of what computes: with others the last digits may be others."""
+        return {name: version(name) for name in _ENGINES}
+
+
+def _listed(vary: Vary) -> dict[str, Any]:
+    """Numbers one by one, however they were given; the digest of very many."""
+    found: dict[str, Any] = {}
+    for key, given in (("values", vary.grid), ("samples", vary.samples)):
+        if given is not None:
+            numbers = np.asarray(given, float)
+            digest = hashlib.sha256(numbers.tobytes()).hexdigest()
+            found[key] = numbers.tolist() if numbers.size <= _MOST_LISTED else digest
+    return found
+
+
+def _plain(value: Any) -> Any:
+    """As JSON has it; what was left out is left out."""
+    if isinstance(value, Mapping):
+        return {
+            str(k): _plain(v)
+            for k, v in value.items()
+            if v is not None and not (isinstance(v, tuple) and not v)
+        }
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    return value
+
+
+def check(plan: Plan) -> None:
+    """SomersaultError, naming what is wrong, unless every part of a plan makes sense."""
+    for name, vary in plan.vary.items():
+        _vary.check(name, vary)
+        if name == SAMPLE or name in ("time", "steps", "ended", "history_time"):
+            raise SomersaultError(f"vary.{name}: that name is taken; call the quantity otherwise")
+    _check_sample(plan)
+    _report.check(plan.report, plan.system)
+    told = _report.variables(plan.report, plan.system)
+    for name in plan.vary:
+        if name in told:
+            raise SomersaultError(
+                f"vary.{name} has the name of something reported; call it takeoff_{name}, say"
+            )
+    check_apart(plan.vary, plan.targets)
+    if plan.count > _MOST:
+        shape = " x ".join(f"{n} {length}" for n, length in plan.dims.items())
+        raise SomersaultError(
+            f"vary asks for {plan.count:.3g} flights ({shape}); at most {_MOST:.0e} are flown"
+        )
+    _check_edges(plan)
+    json.dumps(plan.specification)
+
+
+def _check_sample(plan: Plan) -> None:
+    if plan.sequence not in _vary.SEQUENCES:
+        raise SomersaultError(
+            f"sample.sequence {plan.sequence!r} is none; use {', '.join(_vary.SEQUENCES)}"
+        )
+    along = [name for name, v in plan.vary.items() if v.grid is None]
+    drawn = [name for name, v in plan.vary.items() if v.distribution is not None]
+    if not 1 <= plan.size <= _MOST:
+        raise SomersaultError(
+            f"sample.size is {plan.size}; give a whole number from 1 to {_MOST:.0e}"
+        )
+    if plan.size > 1 and not along:
+        raise SomersaultError(
+            f"sample.size is {plan.size}, but nothing is drawn; give a quantity a distribution"
+        )
+    for name in along:
+        listed = plan.vary[name].samples
+        if listed is not None and len(listed) != plan.size:
+            raise SomersaultError(
+                f"vary.{name}.samples has {len(listed)} numbers, but sample.size is {plan.size}"
+            )
+    if plan.sequence == "saltelli" and plan.size % (len(drawn) + 2):
+        raise SomersaultError(
+            f"sample.size is {plan.size}; the saltelli sequence of {len(drawn)} drawn quantities "
+            f"needs a multiple of {len(drawn) + 2}"
+        )
+    if not 0 <= plan.seed < 2**63:
+        raise SomersaultError(
+            f"sample.seed is {plan.seed}; give a whole number that is not negative"
+        )
+
+
+def _check_edges(plan: Plan) -> None:
+    """Refuse a grid whose ends cannot take off: a mistake, not a flight that fails."""
+    for name, vary in plan.vary.items():
+        if vary.grid is None:
+            continue
+        ends = np.array([vary.grid.min(), vary.grid.max()])
+        one = {name: vary}
+        values = moved(plan.values, one, {name: plan.targets[name]}, {name: ends})
+        good = sound(plan.joints, values, 2)
+        if not good.all():
+            raise SomersaultError(
+                f"vary.{name}.values has {ends[~good][0]:g}, with which there is no takeoff "
+                f"({', '.join(vary.targets)}: limits, order of times, or sign)"
+            )

@@ -1,0 +1,92 @@
+"""The chunks of an ensemble on this machine, in lanes and threads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from contextlib import contextmanager
+from itertools import islice
+
+from somersault._array import Array
+from somersault.dynamics._kernel import cores, use_threads
+from somersault.ensembles._plan import Plan
+from somersault.ensembles._store import Layout
+
+Put = Callable[[int, Mapping[str, Array]], None]
+Told = Callable[[int], None]  # so many more flights are done
+
+
+def on_threads(
+    plan: Plan, cut: Layout, chunks: list[int], put: Put, told: Told, threads: int | None
+) -> None:
+    """Fly chunks, each in one thread, and hand their rows to `put` in this one.
+
+    Fewer chunks than threads are each shared out among several.
+    """
+    if not chunks:
+        return
+    most = threads or cores()
+    side_by_side = min(most, len(chunks))
+    first = cut.flights(chunks[0])[0]
+    plan.fly(first, first + 1)  # compiles, before several threads would
+
+    def fly(k: int) -> tuple[int, Mapping[str, Array]]:
+        return k, flown(plan, cut, k, most // side_by_side)
+
+    with ThreadPoolExecutor(side_by_side) as pool:
+        for k, rows in _as_done(pool, chunks, 2 * side_by_side, fly):
+            put(k, rows)
+            told(cut.size(k))
+
+
+def flown(plan: Plan, cut: Layout, k: int, threads: int) -> Mapping[str, Array]:
+    """The rows of chunk k, on so many threads."""
+    with use_threads(threads):
+        return plan.fly(*cut.flights(k))
+
+
+def _as_done(
+    pool: ThreadPoolExecutor, chunks: Iterable[int], most: int,
+    fly: Callable[[int], tuple[int, Mapping[str, Array]]],
+) -> Iterator[tuple[int, Mapping[str, Array]]]:  # fmt: skip
+    """Chunks and rows as they finish, never more than `most` begun and not handed on."""
+    ahead = iter(chunks)
+    running = {pool.submit(fly, k) for k in islice(ahead, most)}
+    try:
+        while running:
+            done, running = wait(running, return_when=FIRST_COMPLETED)
+            running |= {pool.submit(fly, k) for k in islice(ahead, len(done))}
+            while done:
+                yield done.pop().result()
+    finally:
+        for future in running:
+            future.cancel()
+
+
+@contextmanager
+def progress(total: int, done: int, shown: bool) -> Iterator[Told]:
+    """A bar with rate and time left on standard error, for `total` flights, `done` before."""
+    if not shown or total == done:
+        yield lambda more: None
+        return
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        Progress,
+        ProgressColumn,
+        Task,
+        TextColumn,
+        TimeRemainingColumn,
+    )
+    from rich.text import Text
+
+    class Rate(ProgressColumn):
+        def render(self, task: Task) -> Text:
+            return Text(f"{task.speed:,.0f} flights/s" if task.speed else "")
+
+    with Progress(
+        TextColumn("{task.completed:,.0f} of {task.total:,.0f} flights"), BarColumn(), Rate(),
+        TimeRemainingColumn(), console=Console(stderr=True), transient=True,
+    ) as bar:  # fmt: skip
+        task = bar.add_task("", total=total, completed=done)
+        yield lambda more: bar.update(task, advance=more)

@@ -1,0 +1,92 @@
+"""Which of the drawn quantities the scatter of a result comes from."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from somersault._errors import SomersaultError
+from somersault.ensembles._plan import SAMPLE
+from somersault.ensembles._summary import reported
+from somersault.ensembles._vary import DISTRIBUTIONS
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_FEWEST = 64
+
+
+def sensitivity(data: xr.Dataset, name: str, confidence: float = 0.95, seed: int = 0) -> xr.Dataset:
+    """Sobol' indices of a reported quantity by each drawn one, greatest first.
+
+    `first_order`: the share of the variance that goes if this quantity alone were known;
+    `total`: the share that stays if all others were, from a "saltelli" sequence only. With the
+    half-widths `first_order_confidence`, `total_confidence` from resampling with `seed`. From a
+    saltelli sequence by its own estimator, else by random balance designs (RBD-FAST), both of
+    SALib. At each point of the grids there are.
+    """
+    import xarray as xr
+
+    specification = json.loads(data.attrs["specification"])
+    inputs = [n for n, v in specification["vary"].items() if any(d in v for d in DISTRIBUTIONS)]
+    if not inputs:
+        raise SomersaultError("nothing is drawn in this ensemble, so nothing can be ranked")
+    values = reported(data, name)
+    if SAMPLE not in values.dims or "history_time" in values.dims:
+        raise SomersaultError(f"{name} has no single value for each sample to rank")
+    if values.sizes[SAMPLE] < _FEWEST:
+        raise SomersaultError(
+            f"{values.sizes[SAMPLE]} samples rank nothing; sample.size must be {_FEWEST} at least"
+        )
+    x = np.stack([data[n].values for n in inputs], 1)
+    ordered = values.transpose(..., SAMPLE)
+    design = specification["sample"]["sequence"] == "saltelli"
+    rows = ordered.values.reshape(-1, ordered.sizes[SAMPLE])
+    found = [_indices(inputs, x, y, design, confidence, seed) for y in rows]
+    lead = [str(d) for d in ordered.dims if d != SAMPLE]
+    shape = [ordered.sizes[d] for d in lead]
+    result = xr.Dataset(
+        {
+            key: ((*lead, "input"), np.array([f[key] for f in found]).reshape(*shape, len(inputs)))
+            for key in found[0]
+        },
+        {"input": inputs, **{d: data[d] for d in lead if d in data.coords}},
+        {"quantity": name, "confidence": confidence},
+    )
+    by = result["total" if design else "first_order"]
+    if lead:
+        by = by.mean(lead)
+    return result.isel(input=np.argsort(-by.values, kind="stable"))
+
+
+def _indices(
+    inputs: list[str], x: Any, y: Any, design: bool, confidence: float, seed: int
+) -> dict[str, Any]:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        from SALib.analyze import rbd_fast, sobol
+
+        problem = {"num_vars": len(inputs), "names": inputs, "bounds": [[0.0, 1.0]] * len(inputs)}
+        blank = np.full(len(inputs), np.nan)
+        names = ["first_order", "first_order_confidence"]
+        names += ["total", "total_confidence"] if design else []
+        if design:
+            y = y.reshape(-1, len(inputs) + 2)
+            y = y[~np.isnan(y).any(1)].ravel()  # a point whose flight failed goes with its group
+        else:
+            flown = ~np.isnan(y)
+            x, y = x[flown], y[flown]
+        if len(y) < _FEWEST or np.ptp(y) == 0:
+            return dict.fromkeys(names, blank)
+        if design:
+            found = sobol.analyze(
+                problem, y, calc_second_order=False, conf_level=confidence, seed=seed
+            )
+            keys = ["S1", "S1_conf", "ST", "ST_conf"]
+        else:
+            found = rbd_fast.analyze(problem, x, y, conf_level=confidence, seed=seed)
+            keys = ["S1", "S1_conf"]
+    return {name: np.asarray(found[key]) for name, key in zip(names, keys, strict=True)}

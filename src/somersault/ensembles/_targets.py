@@ -1,0 +1,156 @@
+"""From the names of numbers to the numbers of a takeoff that they mean."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from somersault._array import Array
+from somersault._errors import SomersaultError
+from somersault.dynamics._tree import parameter_names
+from somersault.ensembles._vary import Vary
+from somersault.flight._columns import Name, Numbers
+from somersault.model import Model
+from somersault.model._mirror import mirror_pairs
+
+_JOINT = re.compile(
+    r"^joints\.(.+)\.(angle|rate|stiffness|damping|rest|pretension|times|angles)(?:\.(\d+))?$"
+)
+_BODY = re.compile(r"^bodies\.(.+)\.(?:(mass)|(com|position)\.([123]))$")
+_TAKEOFF = re.compile(r"^takeoff\.(\w+)(?:\.([123]))?$")
+_SIGNED = ("angle", "rate", "rest", "pretension", "angles")
+_ABOUT = ("angle", "rest", "angles")  # mirrored about the pose in which the file draws the joint
+
+
+@dataclass(frozen=True)
+class Target:
+    """A number of the takeoff that becomes factor · value + offset, or to which that is added."""
+
+    name: Name
+    factor: float
+    offset: float
+
+
+def targets(model: Model, values: Numbers, where: str, vary: Vary) -> tuple[Target, ...]:
+    """All the numbers that a varied quantity moves; SomersaultError for one that is not there."""
+    found = [t for path in vary.targets for t in _targets(model, values, where, path)]
+    return tuple(
+        Target(t.name, t.factor * vary.scale, 0.0 if vary.adds_to else t.offset) for t in found
+    )
+
+
+def _targets(model: Model, values: Numbers, where: str, path: str) -> list[Target]:
+    if match := _TAKEOFF.match(path):
+        what, k = match.groups()
+        name: Name = (what, int(k)) if k else ("takeoff", what)
+        if name not in values:
+            there = [_spelled(n) for n in values if n[0] in ("takeoff", *_VECTORS)]
+            raise SomersaultError(
+                f"{where}: {path} is no number of this takeoff; it has {', '.join(there)}"
+            )
+        return [Target(name, 1.0, 0.0)]
+    if match := _JOINT.match(path):
+        return _of_joint(model, values, where, path, *match.groups())
+    if match := _BODY.match(path):
+        return _of_body(model, where, *match.groups())
+    raise SomersaultError(
+        f"{where}: {path!r} names no number; names are like takeoff.tilt, joints.JOINT.stiffness, "
+        "joints.JOINT.times.2, bodies.BODY.mass"
+    )
+
+
+_VECTORS = ("angular_velocity", "angular_momentum")
+
+
+def _spelled(name: Name) -> str:
+    parts = name if name[0] == "takeoff" else ("takeoff", *name)
+    return ".".join(str(part) for part in parts)
+
+
+def _of_joint(
+    model: Model, values: Numbers, where: str, path: str, joint: str, what: str, k: str | None
+) -> list[Target]:
+    sides = [(joint, 1.0, 0.0)]
+    pair = next((p for p in mirror_pairs(model) if p.name == joint and p.left != p.right), None)
+    if pair is not None and joint not in model.speeds:
+        left, right = (model.joint(model.speeds[at]) for at in (pair.left, pair.right))
+        sign = float(pair.sign) if what in _SIGNED else 1.0
+        offset = right.reference - sign * left.reference if what in _ABOUT else 0.0
+        sides = [(left.name, 1.0, 0.0), (right.name, sign, offset)]
+    found = []
+    for name, factor, offset in sides:
+        model.joint(name)
+        known: list[Name] = [(what, name, int(k))] if k else _every(values, what, name)
+        if not known or any(n not in values for n in known):
+            there = sorted(
+                {".".join(str(x) for x in (n[0], *n[2:])) for n in values if name in n[1:2]}
+            )
+            raise SomersaultError(
+                f"{where}: {path} is no number of this takeoff; joint {name} has {', '.join(there)}"
+            )
+        found += [Target(n, factor, offset) for n in known]
+    return found
+
+
+def _every(values: Numbers, what: str, joint: str) -> list[Name]:
+    return [n for n in values if n[:2] == (what, joint)]
+
+
+def _of_body(
+    model: Model, where: str, body: str, mass: str | None, what: str | None, k: str | None
+) -> list[Target]:
+    names = [b.name for b in model.bodies]
+    if body not in names:
+        raise SomersaultError(f"{where}: there is no body {body!r}; there are {', '.join(names)}")
+    if not mass:
+        if f"{what}.{body}.{k}" not in parameter_names(model):
+            raise SomersaultError(f"{where}: {body} is the base, which has no position to vary")
+        return [Target((f"{what}.{body}.{k}",), 1.0, 0.0)]
+    own = model.bodies[names.index(body)]
+    if own.mass <= 0:
+        raise SomersaultError(f"{where}: body {body} has no mass, so none can be varied")
+    inertia = np.asarray(own.inertia)
+    # The same shape, denser: moments of inertia go with the mass.
+    return [Target((f"mass.{body}",), 1.0, 0.0)] + [
+        Target((f"inertia.{body}.{i + 1}{j + 1}",), float(inertia[i, j]) / own.mass, 0.0)
+        for i in range(3)
+        for j in range(i, 3)
+        if inertia[i, j] != 0
+    ]
+
+
+def check_apart(vary: Mapping[str, Vary], where: Mapping[str, tuple[Target, ...]]) -> None:
+    """SomersaultError where two varied quantities set the same number."""
+    owner: dict[Name, str] = {}
+    for name, group in where.items():
+        for target in group if vary[name].sets else ():
+            if target.name in owner:
+                raise SomersaultError(
+                    f"vary.{owner[target.name]} and vary.{name} set the same number; "
+                    "let one of them be added to it"
+                )
+            owner[target.name] = name
+
+
+def body_names(moved: Mapping[str, tuple[Target, ...]]) -> tuple[str, ...]:
+    """Names of the bodies' numbers among targets, as `Equations` has them."""
+    starts = ("mass.", "inertia.", "com.", "position.")
+    names = [str(t.name[0]) for group in moved.values() for t in group]
+    return tuple(dict.fromkeys(n for n in names if n.startswith(starts)))
+
+
+def moved(
+    values: Numbers, vary: Mapping[str, Vary], where: Mapping[str, tuple[Target, ...]],
+    given: Mapping[str, Array],
+) -> dict[Name, float | Array]:  # fmt: skip
+    """The numbers, with those that are varied as arrays over the flights."""
+    result = dict(values)
+    for name in sorted(where, key=lambda name: bool(vary[name].adds_to)):  # what is set, first
+        for target in where[name]:
+            value = target.factor * given[name] + target.offset
+            before = result[target.name] if vary[name].adds_to else 0.0
+            result[target.name] = before + value
+    return result

@@ -1,0 +1,260 @@
+"""What differs between the flights of an ensemble, and by how much."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy import special
+
+from somersault._array import Array
+from somersault._errors import SomersaultError
+from somersault.flight._numbers import number, numbers
+
+SEQUENCES = ("random", "sobol", "halton", "saltelli")
+_EDGE = 2.0**-54  # keeps draws inside (0, 1), where every distribution is finite
+_MOST = 10**9
+
+# Of each distribution: what its numbers are, and its quantile function.
+DISTRIBUTIONS: dict[str, tuple[str, Any]] = {
+    "uniform": ("[low, high]", lambda u, low, high: low + (high - low) * u),
+    "normal": ("[mean, standard deviation]", lambda u, mean, sd: mean + sd * special.ndtri(u)),
+    "truncated_normal": (
+        "[mean, standard deviation, low, high]",
+        lambda u, mean, sd, low, high: np.clip(
+            mean
+            + sd
+            * special.ndtri(
+                special.ndtr((low - mean) / sd)
+                + u * (special.ndtr((high - mean) / sd) - special.ndtr((low - mean) / sd))
+            ),
+            low,
+            high,
+        ),
+    ),
+    "triangular": (
+        "[low, most likely, high]",
+        lambda u, low, mode, high: np.where(
+            u * (high - low) < mode - low,
+            low + np.sqrt(u * (high - low) * (mode - low)),
+            high - np.sqrt((1 - u) * (high - low) * (high - mode)),
+        ),
+    ),
+    "lognormal": (
+        "[median, standard deviation of the logarithm]",
+        lambda u, median, sd: median * np.exp(sd * special.ndtri(u)),
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Vary:
+    """One varied quantity: which numbers of the takeoff it is, and the values it takes.
+
+    It `sets` numbers, or is added to them (`adds_to`); more than one are moved together. Numbers
+    are named "takeoff.tilt", "takeoff.angular_momentum.2", "joints.NAME.angle" (rate, stiffness,
+    damping, rest, pretension; a pair by its common name), "joints.NAME.times" or
+    "joints.NAME.times.2" (angles likewise; all of them, or one, from 1), "bodies.NAME.mass" (its
+    moments of inertia along with it), "bodies.NAME.com.1", "bodies.NAME.position.3". What they
+    are given is `scale` times this quantity.
+
+    `values` are a grid: every one goes with every other quantity's, along a dimension of its
+    own. All else runs along the dimension `sample`, with the same draws at every point of
+    the grids: `samples` one by one, or a distribution: `uniform` [low, high], `normal` [mean,
+    standard deviation], `truncated_normal` [mean, standard deviation, low, high], `triangular`
+    [low, most likely, high], `lognormal` [median, standard deviation of the logarithm].
+    """
+
+    sets: str | Sequence[str] = ()
+    adds_to: str | Sequence[str] = ()
+    values: Sequence[float] | Array | Mapping[str, float] | None = None
+    samples: Sequence[float] | Array | None = None
+    uniform: Sequence[float] | None = None
+    normal: Sequence[float] | None = None
+    truncated_normal: Sequence[float] | None = None
+    triangular: Sequence[float] | None = None
+    lognormal: Sequence[float] | None = None
+    scale: float = 1.0
+    unit: str = ""
+
+    @property
+    def distribution(self) -> str | None:
+        """Name of the distribution it is drawn from."""
+        return next((d for d in DISTRIBUTIONS if getattr(self, d) is not None), None)
+
+    @property
+    def targets(self) -> tuple[str, ...]:
+        """Names of the numbers that it sets or is added to."""
+        given = self.sets or self.adds_to
+        return (given,) if isinstance(given, str) else tuple(given)
+
+    @property
+    def grid(self) -> Array | None:
+        """The values of a grid."""
+        return None if self.values is None else _listed(self.values)
+
+    def quantile(self, u: Array) -> Array:
+        """Values at uniform draws u in (0, 1)."""
+        assert self.distribution is not None
+        given = [float(x) for x in getattr(self, self.distribution)]
+        return DISTRIBUTIONS[self.distribution][1](u, *given)
+
+
+def _listed(values: Any) -> Array:
+    if isinstance(values, Mapping):
+        return np.linspace(values["from"], values["to"], int(values["count"]))
+    return np.asarray(values, float)
+
+
+def check(name: str, vary: Vary) -> None:
+    """SomersaultError, naming the key, unless a varied quantity makes sense."""
+    where = f"vary.{name}"
+    if not isinstance(vary, Vary):
+        raise SomersaultError(f"{where} must be a somersault.Vary, and is {vary!r}")
+    if bool(vary.sets) == bool(vary.adds_to) or not all(isinstance(t, str) for t in vary.targets):
+        raise SomersaultError(
+            f"{where} must have either sets or adds_to, with the names of numbers like "
+            "'takeoff.tilt' or 'joints.shoulder.stiffness'"
+        )
+    number(f"{where}.scale", vary.scale)
+    sources = [s for s in ("values", "samples", *DISTRIBUTIONS) if getattr(vary, s) is not None]
+    if len(sources) != 1:
+        said = " and ".join(sources) or "none"
+        raise SomersaultError(
+            f"{where} needs one of values, samples, {', '.join(DISTRIBUTIONS)}; it has {said}"
+        )
+    if vary.values is not None:
+        _check_grid(f"{where}.values", vary.values)
+    elif vary.samples is not None:
+        if not numbers(f"{where}.samples", vary.samples).size:
+            raise SomersaultError(f"{where}.samples is empty; give at least one number")
+    else:
+        _check_distribution(where, vary)
+
+
+def _check_grid(where: str, values: Any) -> None:
+    if isinstance(values, Mapping):
+        if set(values) != {"from", "to", "count"}:
+            raise SomersaultError(f"{where} must be a list, or have from, to and count")
+        for key in ("from", "to", "count"):
+            number(f"{where}.{key}", values[key])
+        if not 1 <= values["count"] <= _MOST or values["count"] != int(values["count"]):
+            raise SomersaultError(
+                f"{where}.count must be a whole number from 1 to a thousand million"
+            )
+        if (values["count"] > 1) == (values["from"] == values["to"]):
+            raise SomersaultError(
+                f"{where} goes from {values['from']} to {values['to']} in {values['count']} "
+                "values; an empty range has one value, and any other at least two"
+            )
+    listed = numbers(where, _listed(values))
+    if not listed.size:
+        raise SomersaultError(f"{where} is empty; give at least one number")
+    if len(np.unique(listed)) < len(listed):
+        raise SomersaultError(f"{where} has the same number twice; leave one out")
+
+
+def _check_distribution(where: str, vary: Vary) -> None:
+    kind = vary.distribution
+    assert kind is not None
+    form = DISTRIBUTIONS[kind][0]
+    given = numbers(f"{where}.{kind}", getattr(vary, kind))
+    wanted = form.count(",") + 1
+    if len(given) != wanted:
+        raise SomersaultError(f"{where}.{kind} must be {form}, and is {given.tolist()}")
+    ends = {"uniform": (0, 1), "truncated_normal": (2, 3), "triangular": (0, 2)}.get(kind)
+    if ends is not None and not given[ends[0]] < given[ends[1]]:
+        raise SomersaultError(
+            f"{where}.{kind} is an empty range; it must be {form}, low below high"
+        )
+    if kind == "triangular" and not given[0] <= given[1] <= given[2]:
+        raise SomersaultError(f"{where}.{kind} must be {form}, in rising order")
+    if kind in ("normal", "truncated_normal", "lognormal") and given[1] <= 0:
+        raise SomersaultError(f"{where}.{kind} must be {form}, and that deviation positive")
+    if kind == "truncated_normal" and not (
+        (given[2] - given[0]) / given[1] < 8 and (given[3] - given[0]) / given[1] > -8
+    ):
+        raise SomersaultError(f"{where}.{kind} keeps nothing of its bell: the range is too far off")
+    if kind == "lognormal" and given[0] <= 0:
+        raise SomersaultError(f"{where}.{kind} must be {form}, and its median positive")
+
+
+def draws(vary: Mapping[str, Vary], sequence: str, seed: int, places: Array) -> dict[str, Array]:
+    """Values of what is drawn or listed, at rising places (n,) along `sample`.
+
+    Every place has its own draw, the same whichever others are asked for with it.
+    """
+    if not len(places):
+        return {name: np.empty(0) for name in vary}
+    first, last = int(places[0]), int(places[-1])
+    within = places - first
+    drawn = [name for name, v in vary.items() if v.distribution is not None]
+    found = {}
+    uniforms = _uniforms(drawn, sequence, seed, first, last + 1 - first)
+    for name, v in vary.items():
+        if v.samples is not None:
+            found[name] = np.asarray(v.samples, float)[places]
+        elif v.distribution is not None:
+            u = np.clip(uniforms[name], _EDGE, 1 - _EDGE)
+            found[name] = v.quantile(u)[within]
+    return found
+
+
+def _uniforms(
+    names: list[str], sequence: str, seed: int, first: int, count: int
+) -> dict[str, Array]:
+    """Draws from (0, 1), each quantity's `count` of them from the `first` on."""
+    if sequence == "random":
+        return {name: _random(name, seed, first, count) for name in names}
+    size = len(names)
+    if sequence == "saltelli":
+        return dict(zip(names, _saltelli(size, seed, first, count), strict=True))
+    engine = _sobol(size, seed) if sequence == "sobol" else _halton(size, seed)
+    points = _points(engine, first, count)
+    return {name: np.ascontiguousarray(points[:, k]) for k, name in enumerate(names)}
+
+
+def _sobol(size: int, seed: int) -> Any:
+    from scipy.stats import qmc
+
+    return qmc.Sobol(size, rng=seed, bits=40)
+
+
+def _halton(size: int, seed: int) -> Any:
+    from scipy.stats import qmc
+
+    return qmc.Halton(size, rng=seed)
+
+
+def _points(engine: Any, first: int, count: int) -> Array:
+    if first:  # Sobol's engine does not know how to skip none
+        engine.fast_forward(first)
+    return engine.random(count)
+
+
+def _random(name: str, seed: int, first: int, count: int) -> Array:
+    """A stream of the quantity's own, so that others may come and go beside it."""
+    stream = np.random.SeedSequence([seed, zlib.crc32(name.encode())])
+    return np.random.Generator(np.random.PCG64DXSM(stream).advance(first)).random(count)
+
+
+def _saltelli(size: int, seed: int, first: int, count: int) -> Array:
+    """Saltelli's design for first-order and total indices, (size, count).
+
+    Samples come in groups of size + 2: a point A, then A with one coordinate after another taken
+    from a second point B, then B itself.
+    """
+    group = size + 2
+    begin, end = first // group, (first + count - 1) // group + 1
+    engine = _sobol(2 * size, seed)
+    points = _points(engine, begin, end - begin)
+    a, b = points[:, :size], points[:, size:]
+    whole = np.repeat(a[:, None], group, 1)
+    for k in range(size):
+        whole[:, 1 + k, k] = b[:, k]
+    whole[:, -1] = b
+    flat = whole.reshape(-1, size)[first - begin * group :][:count]
+    return np.ascontiguousarray(flat.T)

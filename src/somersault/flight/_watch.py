@@ -1,0 +1,139 @@
+"""What is kept account of while a flight goes on: its turns, and how far it strays.
+
+Turns are counted as `attitude.unwrapped_angles` counts them, from one step of the integration
+to the next, each short enough that none is missed. Extremes are those of the cubic that has the
+values and the rates at both ends of a step; the steps resolve the fastest motion, so they
+are good to some thousandths of the swing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+ANGLES = ("somersault", "tilt", "twist")
+RATES = tuple(f"{name}_rate" for name in ANGLES)
+VELOCITIES = tuple(f"angular_velocity_{k}" for k in (1, 2, 3))
+_LONGEST = 1.0  # rad that a body turns in a step, and less near the singularity of the angles
+_NEAREST = 0.02
+
+Quantities = Callable[[Any, Any, Any], dict[str, Any]]
+
+
+def watched(extremes: tuple[str, ...]) -> list[str]:
+    """Names of the watched rows: the angles, then the least and greatest of each quantity."""
+    return [*ANGLES, *(f"{which}_{name}" for name in extremes for which in ("least", "greatest"))]
+
+
+def longest(quaternion: list[Any], omega: list[Any]) -> Any:
+    """The longest step (s) from a state: to less than where somersault and twist run off."""
+    upright = ca.sqrt(ca.fmax(1 - _sine_of_tilt(quaternion) ** 2, 0))
+    rate = ca.sqrt(sum(w * w for w in omega) + 1e-300)
+    return ca.fmin(ca.fmax(upright, _NEAREST), 1.0) * _LONGEST / rate
+
+
+def watch(
+    extremes: tuple[str, ...], quantities: Quantities, state: int, parameters: int
+) -> ca.Function:
+    """The watched rows after a step, of the rows of `Rows.look`."""
+    y0, f0, y1, f1 = (ca.SX.sym(name, state) for name in ("y0", "f0", "y1", "f1"))
+    t0, t1 = ca.SX.sym("t0"), ca.SX.sym("t1")
+    p, before = ca.SX.sym("p", parameters), ca.SX.sym("w", 3 + 2 * len(extremes))
+    angles = [before[k] for k in range(3)]
+    after = _followed(angles, [y1[k] for k in range(4)])
+    rows = list(after)
+    if extremes:
+        g0, rate0 = _with_rates(extremes, quantities, angles, y0, f0, t0, p)
+        g1, rate1 = _with_rates(extremes, quantities, after, y1, f1, t1, p)
+        for k in range(len(extremes)):
+            least, greatest = _extremes(g0[k], g1[k], (t1 - t0) * rate0[k], (t1 - t0) * rate1[k])
+            rows += [ca.fmin(before[3 + 2 * k], least), ca.fmax(before[4 + 2 * k], greatest)]
+    look = ca.vertcat(y0, f0, y1, f1, t0, t1, p, before)
+    return ca.Function("watch", [look], [ca.cse(ca.densify(ca.vertcat(*rows)))])
+
+
+def values(extremes: tuple[str, ...], quantities: Quantities, state: int, parameters: int) -> Any:
+    """The quantities at one moment, of (angles, state, time, parameters)."""
+    s, y, t = ca.SX.sym("s", 3), ca.SX.sym("y", state), ca.SX.sym("t")
+    p = ca.SX.sym("p", parameters)
+    found = _named(quantities, [s[k] for k in range(3)], y, t, p)
+    chosen = ca.vertcat(*[found[name] for name in extremes])
+    return ca.Function("values", [ca.vertcat(s, y, t, p)], [ca.cse(ca.densify(chosen))])
+
+
+def _sine_of_tilt(quaternion: list[Any]) -> Any:
+    w, x, y, z = quaternion
+    return 2 * (w * x - y * z) / (w * w + x * x + y * y + z * z)
+
+
+def _followed(angles: list[Any], quaternion: list[Any]) -> list[Any]:
+    """Somersault, tilt and twist of an attitude, in the representation nearest to `angles`."""
+    w, x, y, z = quaternion
+    half_sum, half_difference = ca.atan2(y + z, w - x), ca.atan2(y - z, w + x)
+    plus = ca.sqrt((w + x) ** 2 + (y - z) ** 2)
+    minus = ca.sqrt((w - x) ** 2 + (y + z) ** 2)
+    tilt = 2 * ca.atan2(plus - minus, plus + minus)
+    here = [half_sum + half_difference, tilt, half_sum - half_difference]
+    there = [here[0] + np.pi, np.pi - tilt, here[2] + np.pi]
+    by = [_wrapped(a - b) for a, b in zip(here, angles, strict=True)]
+    other = [_wrapped(a - b) for a, b in zip(there, angles, strict=True)]
+    crosses = sum(d * d for d in other) < sum(d * d for d in by)
+    # Not `if_else`: it multiplies, and a number that is not finite would spread.
+    return [a + one + crosses * (two - one) for a, one, two in zip(angles, by, other, strict=True)]
+
+
+def _wrapped(angle: Any) -> Any:
+    return angle - 2 * np.pi * ca.floor(angle / (2 * np.pi) + 0.5)
+
+
+def _named(quantities: Quantities, angles: list[Any], y: Any, t: Any, p: Any) -> dict[str, Any]:
+    _, tilt, twist = angles
+    w1, w2, w3 = (y[4 + k] for k in range(3))
+    somersaulting = (ca.sin(twist) * w1 + ca.cos(twist) * w2) / ca.cos(tilt)  # eq. 2.3
+    tilting = ca.cos(twist) * w1 - ca.sin(twist) * w2
+    rates = [somersaulting, tilting, w3 + ca.sin(tilt) * somersaulting]
+    return {
+        **dict(zip(ANGLES, angles, strict=True)),
+        **dict(zip(RATES, rates, strict=True)),
+        **dict(zip(VELOCITIES, (w1, w2, w3), strict=True)),
+        **quantities(y, t, p),
+    }
+
+
+def _with_rates(
+    names: tuple[str, ...],
+    quantities: Quantities,
+    angles: list[Any],
+    y: Any,
+    f: Any,
+    t: Any,
+    p: Any,
+) -> tuple[list[Any], list[Any]]:
+    """Quantities and their time derivatives, at a state whose slope is f."""
+    s, yy, tt = ca.SX.sym("s", 3), ca.SX.sym("yy", y.numel()), ca.SX.sym("tt")
+    found = _named(quantities, [s[k] for k in range(3)], yy, tt, p)
+    chosen = ca.vertcat(*[found[name] for name in names])
+    direction = ca.vertcat(*[found[name] for name in RATES], f, 1.0)
+    point = ca.vertcat(s, yy, tt)
+    rate = ca.jtimes(chosen, point, direction)
+    at = ca.vertcat(*angles, y, t)
+    chosen, rate = ca.substitute([chosen, rate], [point], [at])
+    return [chosen[k] for k in range(len(names))], [rate[k] for k in range(len(names))]
+
+
+def _extremes(g0: Any, g1: Any, a0: Any, a1: Any) -> tuple[Any, Any]:
+    """Least and greatest of the cubic with values g and slopes a at both ends of (0, 1)."""
+    c, b = a0 + a1 - 2 * (g1 - g0), 3 * (g1 - g0) - 2 * a0 - a1
+    root = ca.sqrt(ca.fmax(b * b - 3 * c * a0, 0))
+    q = -(b + (1 - 2 * (b < 0)) * root)
+    found = [g0, g1]
+    for s in (q / (3 * c), a0 / q):
+        # Not a number, where there is no such turning point, is an end of the step.
+        inside = ca.fmin(ca.fmax(s, 0.0), 1.0)
+        found.append(g0 + inside * (a0 + inside * (b + inside * c)))
+    least = ca.fmin(ca.fmin(found[0], found[1]), ca.fmin(found[2], found[3]))
+    greatest = ca.fmax(ca.fmax(found[0], found[1]), ca.fmax(found[2], found[3]))
+    return least, greatest
