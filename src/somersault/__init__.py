@@ -19,7 +19,19 @@ if TYPE_CHECKING:
     from somersault._errors import SomersaultError, SomersaultWarning
     from somersault.dynamics import Equations
     from somersault.ensembles import Ensemble, Report, Vary, ensemble
-    from somersault.flight import Flight, JointTakeoff, Landing, Takeoff, deviated_flight, fly
+    from somersault.flight import (
+        Flight,
+        JointTakeoff,
+        Landing,
+        Motion,
+        Takeoff,
+        compliant,
+        deviated_flight,
+        fly,
+        read_motion,
+        sampled_motion,
+        with_momentum,
+    )
     from somersault.model import (
         Body,
         Joint,
@@ -53,7 +65,12 @@ _HOME = {
     "Flight": "somersault.flight",
     "JointTakeoff": "somersault.flight",
     "Landing": "somersault.flight",
+    "Motion": "somersault.flight",
     "Takeoff": "somersault.flight",
+    "compliant": "somersault.flight",
+    "read_motion": "somersault.flight",
+    "sampled_motion": "somersault.flight",
+    "with_momentum": "somersault.flight",
     "deviated_flight": "somersault.flight",
     "fly": "somersault.flight",
     "LinearSpin": "somersault.stability",
@@ -73,6 +90,7 @@ __all__ = [
     "LinearSpin",
     "Mode",
     "Model",
+    "Motion",
     "Report",
     "SomersaultError",
     "SomersaultWarning",
@@ -81,15 +99,19 @@ __all__ = [
     "Vary",
     "athlete",
     "athlete_from_measurements",
+    "compliant",
     "deviated_flight",
     "ensemble",
     "ensembles",
     "fly",
     "load",
     "named_pose",
+    "read_motion",
+    "sampled_motion",
     "shipped",
     "spin",
     "stability",
+    "with_momentum",
 ]
 
 

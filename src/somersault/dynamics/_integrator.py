@@ -21,7 +21,7 @@ STATUS = {
     _l.TOO_MANY_STEPS: "too many steps",
     _l.BROKEN: "not finite",
 }
-_MOST_STEPS = 1_000_000
+MOST_STEPS = 1_000_000
 FIRST_STEP = 1e-3  # s; what it is costs a step or two
 _BLOCKS_A_TASK = 4  # at least
 _TASKS_A_THREAD = 16  # at most: lanes differ in how long they take
@@ -105,13 +105,15 @@ class Integrator:
         begin: Array | None = None,
         step: Array | None = None,
         watched: Array | None = None,
+        most_steps: float | Array = MOST_STEPS,
     ) -> Solution:
         """From `start` (N, n) with `parameters` (N, m), at increasing `samples` (K,).
 
         Lanes begin at times `begin` (N,), 0 by default, with first steps `step` (N,). `tolerance`
         bounds each step's error in every state, relative to 1 + |state|; `end` (N,) ends lanes
         before the last sample. An event is found to rounding. `watched` (N, w) is what was
-        watched before.
+        watched before. A lane that has taken `most_steps` (all the
+        same, or (N,)) ends.
         """
         count, before = len(start), self._rows.before_watched
         times = np.zeros((count, 1)) if begin is None else np.asarray(begin)[:, None]
@@ -123,7 +125,7 @@ class Integrator:
         control[:, _l.STEP] = FIRST_STEP if step is None else packed(step[:, None])[:, 0]
         control[:, _l.END] = np.inf if end is None else packed(np.asarray(end)[:, None])[:, 0]
         control[:, _l.TOLERANCE] = tolerance
-        control[:, _l.LIMIT] = _MOST_STEPS
+        control[:, _l.LIMIT] = packed(np.broadcast_to(most_steps, count)[:, None])[:, 0]
         samples = np.ascontiguousarray(samples, float)
         if len(samples) == 1:
             whole, flat = self._to_the_end(x, control, samples, count)

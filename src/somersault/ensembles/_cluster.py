@@ -8,7 +8,10 @@ others; what the program had finished stays finished if it, or the scheduler, di
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
+import logging
+from collections.abc import Iterator, Mapping
+from concurrent.futures import CancelledError
+from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -38,7 +41,7 @@ def on_cluster(
     from distributed import Client, LocalCluster
 
     quiet = {"distributed.scheduler.allowed-failures": _DEATHS, "distributed.comm.retry.count": 0}
-    with dask.config.set(quiet):
+    with dask.config.set(quiet), _unlogged():
         if scheduler is not None:
             with _client(scheduler) as client:
                 _carry(client, plan, cut, chunks, put, told, file, threads, scheduler)
@@ -50,6 +53,26 @@ def on_cluster(
             host="127.0.0.1", silence_logs="CRITICAL",
         ) as cluster, Client(cluster) as client:  # fmt: skip
             _carry(client, plan, cut, chunks, put, told, file, each, "this machine")
+
+
+@contextmanager
+def _unlogged() -> Iterator[None]:
+    """What goes wrong is told in one sentence, and not in dask's log beside it."""
+    logs = [logging.getLogger(name) for name in ("distributed", "distributed.client")]
+    levels = [log.level for log in logs]
+    for log in logs:
+        log.setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    finally:
+        for log, level in zip(logs, levels, strict=True):
+            log.setLevel(level)
+
+
+def check_scheduler(address: str) -> None:
+    """SomersaultError unless a scheduler answers at an address."""
+    with _unlogged():
+        _client(address).close()
 
 
 def _client(address: str) -> Client:
@@ -68,7 +91,6 @@ def _carry(
     client: Client, plan: Plan, cut: Layout, chunks: list[int], put: _run.Put, told: _run.Told,
     file: Path | None, threads: int | None, where: str,
 ) -> None:  # fmt: skip
-    from distributed import as_completed
     from distributed.scheduler import KilledWorker
 
     try:
@@ -76,23 +98,13 @@ def _carry(
         _check_engines(client, plan)
         shared = client.scatter(plan, broadcast=False, hash=False)
         path = None if file is None else str(file.resolve())
-        ahead = iter(chunks)
-
-        def begin(count: int) -> list[Any]:
-            return [
-                client.submit(_chunk, shared, cut, k, path, threads, pure=False)
-                for k in islice(ahead, count)
-            ]
-
-        running = as_completed(begin(_AHEAD * len(client.scheduler_info(n_workers=-1)["workers"])))
-        for future in running:
-            k, rows = future.result()
-            if rows is not None:
-                put(k, rows)
+        for k in _flown(client, shared, cut, chunks, put, path, threads):
             told(cut.size(k))
-            future.release()
-            for more in begin(1):
-                running.add(more)
+        if file is not None:  # a worker may have written into a copy of the store at its path
+            done = _store.finished(file, cut)
+            lost = [k for k in chunks if k not in done]
+            for _ in _flown(client, shared, cut, lost, put, None, threads):
+                pass
     except KilledWorker:
         raise SomersaultError(
             f"a chunk has killed {_DEATHS} workers at {where}, perhaps for want of memory; give a "
@@ -100,13 +112,39 @@ def _carry(
         ) from None
     except SomersaultError:
         raise
-    except (OSError, TimeoutError, asyncio.CancelledError) as trouble:
+    except (OSError, TimeoutError, asyncio.CancelledError, CancelledError) as trouble:
         if isinstance(trouble, OSError) and trouble.errno is not None and trouble.filename:
             raise  # a full disk, say
         raise SomersaultError(
             f"the scheduler at {where} has gone, or has no workers; what is finished is kept: run "
             "the same command again to go on"
         ) from None
+
+
+def _flown(
+    client: Client, shared: Any, cut: Layout, chunks: list[int], put: _run.Put,
+    path: str | None, threads: int | None,
+) -> Iterator[int]:  # fmt: skip
+    """Chunks as they are finished on the workers, no more of them ahead than keeps them busy."""
+    from distributed import as_completed
+
+    ahead = iter(chunks)
+
+    def begin(count: int) -> list[Any]:
+        return [
+            client.submit(_chunk, shared, cut, k, path, threads, pure=False)
+            for k in islice(ahead, count)
+        ]
+
+    running = as_completed(begin(_AHEAD * len(client.scheduler_info(n_workers=-1)["workers"])))
+    for future in running:
+        k, rows = future.result()
+        if rows is not None:
+            put(k, rows)
+        future.release()
+        for more in begin(1):
+            running.add(more)
+        yield k
 
 
 def _check_engines(client: Client, plan: Plan) -> None:

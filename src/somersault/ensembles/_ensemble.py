@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
+STEPS = 100_000  # of one flight's integration
+_MOST_STEPS = 10**9
 _CHUNK = 65_536  # flights
 _LEAST_CHUNK = 8_192
 _PARTS = 8  # that a small ensemble is cut into
@@ -39,7 +41,8 @@ class Ensemble:
 
     @staticmethod
     def open(path: str | Path) -> Ensemble:
-        """An ensemble that was written before, whole or in part; values are read when used."""
+        """An ensemble that was written before, whole or in part: a Zarr store, whose values are
+        read when used, or NetCDF."""
         file = Path(path)
         if not file.exists():
             raise SomersaultError(f"there is no ensemble {str(path)!r}; check the path")
@@ -92,6 +95,7 @@ def ensemble(
     report: Report | Sequence[str] = Report.quantities,
     accuracy: float = 1e-7,
     until: Event | None = None,
+    steps: int = STEPS,
     out: str | Path | None = None,
     chunk: int | None = None,
     threads: int | None = None,
@@ -104,7 +108,8 @@ def ensemble(
     `vary` names the varied quantities (`Vary`). Grids span dimensions of their own; everything
     drawn runs along `sample`, `size` of them, from the `seed`, as a "random", "sobol", "halton"
     or "saltelli" `sequence`. `report` is a `Report`, or the names of its quantities. `accuracy` and
-    `until` are those of `fly`.
+    `until` are those of `fly`; a flight that takes more than `steps` steps of the integration has
+    failed, and is marked.
 
     Without `out` the result stays in memory. A path that ends in .nc gets it as NetCDF in the
     end; any other is a Zarr store, which fills chunk by chunk (`chunk` flights each), and which
@@ -113,14 +118,16 @@ def ensemble(
     numbers are the same, bit for bit. Raises SomersaultError for what does not fit, and for a
     store of another specification.
     """
-    planned = plan(model, takeoff, duration, vary, size, seed, sequence, report, accuracy, until)
+    planned = plan(
+        model, takeoff, duration, vary, size, seed, sequence, report, accuracy, until, steps
+    )
     return carried_out(planned, out, chunk, threads, workers, scheduler, progress)
 
 
 def plan(
     model: str | Model, takeoff: Takeoff | None, duration: float,
     vary: Mapping[str, Vary] | None, size: int | None, seed: int, sequence: str,
-    report: Report | Sequence[str], accuracy: float, until: str | None,
+    report: Report | Sequence[str], accuracy: float, until: str | None, steps: int,
 ) -> Plan:  # fmt: skip
     """What `ensemble` would fly; SomersaultError for what does not fit."""
     if number("duration", duration) <= 0:
@@ -130,9 +137,11 @@ def plan(
         raise SomersaultError(f"a takeoff is a somersault.Takeoff, and not {takeoff!r}")
     told = report if isinstance(report, Report) else Report(tuple(report))
     varied = dict(vary or {})
-    for what, value in (("sample.size", size), ("sample.seed", seed)):
+    for what, value in (("sample.size", size), ("sample.seed", seed), ("steps", steps)):
         if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
             raise SomersaultError(f"{what} must be a whole number, and is {value!r}")
+    if not 1 <= steps <= _MOST_STEPS:
+        raise SomersaultError(f"steps must be a whole number from 1, and is {steps}")
     if size is None:
         listed = [
             len(v.samples) for v in varied.values() if isinstance(v, Vary) and v.samples is not None
@@ -140,7 +149,7 @@ def plan(
         size = listed[0] if listed else 1
     made = Plan(
         load(model), takeoff or Takeoff(), float(duration), varied, told, size, seed, sequence,
-        float(accuracy), until,
+        float(accuracy), until, steps,
     )  # fmt: skip
     check(made)
     return made
@@ -164,6 +173,10 @@ def carried_out(
     if file.exists():
         cut = _store.resume(file, plan)
     else:
+        if scheduler is not None:  # before anything is written
+            from somersault.ensembles._cluster import check_scheduler
+
+            check_scheduler(scheduler)
         _store.create(file, plan, cut)
     done = _store.finished(file, cut)
     left = [k for k in range(len(cut)) if k not in done]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
@@ -33,6 +34,7 @@ SAMPLE = "sample"
 _MOST = 10**11  # flights
 _MOST_LISTED = 10_000
 _TOGETHER = 8_192  # flights whose numbers stay near the processor
+_NAME = re.compile(r"\w[\w-]*")  # of an array in a store, and of a word in its attributes
 _ENGINES = ("somersault", "casadi", "llvmlite", "numpy", "scipy")
 
 
@@ -53,6 +55,7 @@ class Plan:
     sequence: str
     accuracy: float
     until: str | None
+    steps: int
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in self.__dataclass_fields__}
@@ -83,7 +86,12 @@ class Plan:
     def system(self) -> System:
         """The equations, shared with every plan that has the same."""
         return system(
-            self.model, kinds(self.joints), self.until, self.bodies, tuple(self.report.extremes)
+            self.model,
+            kinds(self.joints),
+            self.until,
+            self.bodies,
+            tuple(self.report.extremes),
+            self.takeoff.tape is not None,
         )
 
     @property
@@ -149,12 +157,14 @@ class Plan:
                 for n, x in values.items()
             }
         begun = starts(chosen, self.takeoff, self.joints, values, count)
-        course = Course(chosen, self.joints, begun.values, begun.q, count, self.duration)
-        state = chosen.start(begun.quaternion, begun.omega, begun.q, begun.u)
+        course = Course(chosen, self.joints, begun, self.duration)
+        tape = self.takeoff.tape
+        state = chosen.start(begun.quaternion, begun.omega, begun.q, begun.u, tape)
         zero = course.parameters(np.zeros((count, 1)))[:, 0]
         watched = _report.first_watched(self.report, chosen, begun.angles, state, zero)
         times = self.report.times(self.duration)
-        found = solve(chosen, state, course, times, self.accuracy * TOLERANCE_PER_ACCURACY, watched)
+        tolerance = self.accuracy * TOLERANCE_PER_ACCURACY
+        found = solve(chosen, state, course, times, tolerance, watched, self.steps)
         final = course.parameters(found.end[:, None])[:, 0]
         along = None
         if self.report.history:
@@ -171,6 +181,7 @@ class Plan:
             "duration": self.duration,
             "until": self.until,
             "accuracy": self.accuracy,
+            "steps": self.steps,
             "takeoff": _plain(takeoff),
             "vary": {name: _plain(asdict(v) | _listed(v)) for name, v in self.vary.items()},
             "sample": {"size": self.size, "seed": self.seed, "sequence": self.sequence},
@@ -213,6 +224,10 @@ def check(plan: Plan) -> None:
     """SomersaultError, naming what is wrong, unless every part of a plan makes sense."""
     for name, vary in plan.vary.items():
         _vary.check(name, vary)
+        if not _NAME.fullmatch(name):
+            raise SomersaultError(
+                f"vary.{name!r} is no name for a quantity; names are of letters, digits, _ and -"
+            )
         if name == SAMPLE or name in ("time", "steps", "ended", "history_time"):
             raise SomersaultError(f"vary.{name}: that name is taken; call the quantity otherwise")
     _check_sample(plan)
@@ -254,6 +269,11 @@ def _check_sample(plan: Plan) -> None:
             raise SomersaultError(
                 f"vary.{name}.samples has {len(listed)} numbers, but sample.size is {plan.size}"
             )
+        if listed is not None and plan.sequence == "saltelli":
+            raise SomersaultError(
+                f"vary.{name}.samples cannot go along with the saltelli sequence, which has an "
+                "order of its own; use random, sobol or halton"
+            )
     if plan.sequence == "saltelli" and plan.size % (len(drawn) + 2):
         raise SomersaultError(
             f"sample.size is {plan.size}; the saltelli sequence of {len(drawn)} drawn quantities "
@@ -261,7 +281,7 @@ def _check_sample(plan: Plan) -> None:
         )
     if not 0 <= plan.seed < 2**63:
         raise SomersaultError(
-            f"sample.seed is {plan.seed}; give a whole number that is not negative"
+            f"sample.seed is {plan.seed}; give a whole number from 0 to {2**63 - 1}"
         )
 
 

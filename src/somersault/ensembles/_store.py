@@ -243,6 +243,13 @@ def finished(path: Path, cut: Layout) -> set[int]:
 
 def write(path: Path, plan: Plan, cut: Layout, k: int, rows: Mapping[str, Array]) -> None:
     """The variables of chunk k into the store, `ended` last."""
+    try:
+        _write(path, plan, cut, k, rows)
+    except OSError as trouble:  # of a full disk, which does not say of which file
+        raise OSError(trouble.errno, trouble.strerror, str(path)) from None
+
+
+def _write(path: Path, plan: Plan, cut: Layout, k: int, rows: Mapping[str, Array]) -> None:
     arrays = _arrays(str(path), (path / "zarr.json").stat().st_mtime_ns)
     region = cut.region(k)
     dims = list(cut.dims)
@@ -279,11 +286,25 @@ def opened(path: Path) -> xr.Dataset:
     """The dataset of a store, read as it is used; what is not flown yet is NaN (`ended` 255)."""
     import xarray as xr
 
+    if path.suffix.lower() == ".nc":
+        return _read_netcdf(path)
     names = _read_attributes(path)["variables"]
     data = xr.open_zarr(str(path), chunks=None)
     for name in ("variables", "chunk"):  # of the store, not of the data
         data.attrs.pop(name)
     return data[names]
+
+
+def _read_netcdf(path: Path) -> xr.Dataset:
+    import xarray as xr
+
+    try:
+        with xr.open_dataset(path, engine="h5netcdf") as data:
+            if data.attrs.get("format") == _FORMAT:
+                return data.load()
+    except (OSError, ValueError):
+        pass
+    raise SomersaultError(f"{path} is there, but is no ensemble")
 
 
 def gathered(plan: Plan, cut: Layout) -> tuple[xr.Dataset, Any]:
@@ -299,9 +320,9 @@ def gathered(plan: Plan, cut: Layout) -> tuple[xr.Dataset, Any]:
         over = (*dims, "history_time") if v.over_time else dims
         found[name] = (over, whole, variable_attributes(name, v))
     coords: dict[str, Any] = {}
+    drawn = plan.drawn(np.arange(cut.dims.get(SAMPLE, 0)))
     for name, vary in plan.vary.items():
-        dim = name if name in cut.dims else SAMPLE
-        values = plan.coordinate(name, np.arange(cut.dims[dim]))
+        dim, values = (SAMPLE, drawn[name]) if vary.grid is None else (name, vary.grid)
         coords[name] = (dim, values, coordinate_attributes(vary))
     if plan.report.history:
         coords["history_time"] = ("history_time", times, {"units": "s"})

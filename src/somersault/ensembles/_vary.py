@@ -5,6 +5,7 @@ from __future__ import annotations
 import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,8 @@ from somersault.flight._numbers import number, numbers
 
 SEQUENCES = ("random", "sobol", "halton", "saltelli")
 _EDGE = 2.0**-54  # keeps draws inside (0, 1), where every distribution is finite
-_MOST = 10**9
+_MOST = 10**7  # values of one grid, which are all held in memory
+_LONGEST = 300  # characters that are told of a list
 
 # Of each distribution: what its numbers are, and its quantile function.
 DISTRIBUTIONS: dict[str, tuple[str, Any]] = {
@@ -91,7 +93,7 @@ class Vary:
         given = self.sets or self.adds_to
         return (given,) if isinstance(given, str) else tuple(given)
 
-    @property
+    @cached_property
     def grid(self) -> Array | None:
         """The values of a grid."""
         return None if self.values is None else _listed(self.values)
@@ -129,7 +131,7 @@ def check(name: str, vary: Vary) -> None:
     if vary.values is not None:
         _check_grid(f"{where}.values", vary.values)
     elif vary.samples is not None:
-        if not numbers(f"{where}.samples", vary.samples).size:
+        if not _row(f"{where}.samples", vary.samples).size:
             raise SomersaultError(f"{where}.samples is empty; give at least one number")
     else:
         _check_distribution(where, vary)
@@ -142,19 +144,26 @@ def _check_grid(where: str, values: Any) -> None:
         for key in ("from", "to", "count"):
             number(f"{where}.{key}", values[key])
         if not 1 <= values["count"] <= _MOST or values["count"] != int(values["count"]):
-            raise SomersaultError(
-                f"{where}.count must be a whole number from 1 to a thousand million"
-            )
+            raise SomersaultError(f"{where}.count must be a whole number from 1 to ten million")
         if (values["count"] > 1) == (values["from"] == values["to"]):
             raise SomersaultError(
                 f"{where} goes from {values['from']} to {values['to']} in {values['count']} "
                 "values; an empty range has one value, and any other at least two"
             )
-    listed = numbers(where, _listed(values))
+    listed = _row(where, _listed(values) if isinstance(values, Mapping) else values)
     if not listed.size:
         raise SomersaultError(f"{where} is empty; give at least one number")
     if len(np.unique(listed)) < len(listed):
         raise SomersaultError(f"{where} has the same number twice; leave one out")
+
+
+def _row(where: str, given: Any) -> Array:
+    """As `numbers`; what it says of very many is cut short."""
+    try:
+        return numbers(where, given)
+    except SomersaultError as mistake:
+        said = " ".join(str(mistake).split())
+        raise SomersaultError(said if len(said) < _LONGEST else f"{said[:_LONGEST]} …") from None
 
 
 def _check_distribution(where: str, vary: Vary) -> None:
@@ -220,7 +229,7 @@ def _uniforms(
 def _sobol(size: int, seed: int) -> Any:
     from scipy.stats import qmc
 
-    return qmc.Sobol(size, rng=seed, bits=40)
+    return qmc.Sobol(size, rng=seed, bits=32)  # with more, scipy's engine cannot skip
 
 
 def _halton(size: int, seed: int) -> Any:
@@ -230,9 +239,16 @@ def _halton(size: int, seed: int) -> Any:
 
 
 def _points(engine: Any, first: int, count: int) -> Array:
+    from scipy.stats import qmc
+
+    if isinstance(engine, qmc.Halton):
+        engine.num_generated = first  # its fast_forward would draw all that it skips
+        return engine.random(count)
     if first:  # Sobol's engine does not know how to skip none
         engine.fast_forward(first)
-    return engine.random(count)
+        return engine.random(count)
+    # From the first on it would warn of any number that is no power of 2.
+    return engine.random(1 << (count - 1).bit_length())[:count]
 
 
 def _random(name: str, seed: int, first: int, count: int) -> Array:

@@ -1,8 +1,12 @@
 """Takeoff, flight, landing."""
 
+from somersault.flight._compliance import compliant, with_momentum
 from somersault.flight._deviation import deviated_flight
 from somersault.flight._flight import Flight, Landing
 from somersault.flight._fly import fly
+from somersault.flight._motion import Motion
+from somersault.flight._motion_files import read_motion
+from somersault.flight._motion_samples import sampled_motion
 from somersault.flight._spec import FlightSpec, parse_spec, read_spec
 from somersault.flight._takeoff import JointTakeoff, Takeoff
 
@@ -11,9 +15,14 @@ __all__ = [
     "FlightSpec",
     "JointTakeoff",
     "Landing",
+    "Motion",
     "Takeoff",
+    "compliant",
     "deviated_flight",
     "fly",
     "parse_spec",
+    "read_motion",
     "read_spec",
+    "sampled_motion",
+    "with_momentum",
 ]

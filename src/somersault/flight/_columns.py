@@ -41,9 +41,12 @@ def numbers(takeoff: Takeoff, plans: tuple[JointPlan, ...]) -> dict[Name, float 
 def _of_joint(plan: JointPlan) -> dict[Name, float | Array]:
     name = plan.joint.name
     found: dict[Name, float | Array] = {}
-    if plan.motion == "prescribed":
+    if plan.on_path:
         found |= {("times", name, k + 1): t for k, t in enumerate(plan.times)}
-        return found | {("angles", name, k + 1): a for k, a in enumerate(plan.angles)}
+        found |= {("angles", name, k + 1): a for k, a in enumerate(plan.angles)}
+        if plan.motion == "compliant":
+            found |= {("stiffness", name): plan.stiffness, ("damping", name): plan.damping}
+        return found
     if plan.joint.kind == "ball":
         found |= {("angle", name, k + 1): x for k, x in enumerate(rotation_vector(plan))}
         found |= {("rate", name, k + 1): x for k, x in enumerate(plan.rate)}
@@ -88,19 +91,22 @@ def position(plan: JointPlan, values: Numbers, count: int) -> tuple[Array, Array
         if plan.motion == "locked":
             return q, np.zeros((count, 3))
         return q, row(values, [("rate", name, k) for k in (1, 2, 3)], count)
-    if plan.motion == "prescribed":
+    if plan.on_path:
         begun = path(plan, values, count).at(np.zeros((count, 1)))
         s, c = -begun[0], begun[1]
         angle = sum(c[..., k] * s**k for k in range(c.shape[-1]))
         rate = sum(k * c[..., k] * s ** (k - 1) for k in range(1, c.shape[-1]))
-        return np.asarray(angle), np.asarray(rate)
+        shape = (count, 1)
+        return np.broadcast_to(angle, shape), np.broadcast_to(rate, shape)
     q = row(values, [("angle", name)], count)
     u = np.zeros((count, 1)) if plan.motion == "locked" else row(values, [("rate", name)], count)
     return q, u
 
 
 def path(plan: JointPlan, values: Numbers, count: int) -> Path:
-    """A prescribed joint's path, for each flight or one for all where they are alike."""
+    """A joint's path, for each flight or one for all where they are alike."""
+    if plan.given is not None:
+        return plan.given
     name, k = plan.joint.name, len(plan.times)
     names: list[Name] = [(what, name, j + 1) for what in ("times", "angles") for j in range(k)]
     alike = not any(isinstance(values[n], np.ndarray) for n in names)
@@ -113,7 +119,7 @@ def sound(plans: tuple[JointPlan, ...], values: Numbers, count: int) -> Array:
     good = np.ones(count, bool)
     for plan in plans:
         name, k = plan.joint.name, len(plan.times)
-        if plan.motion == "prescribed":
+        if k:
             good &= increasing(row(values, [("times", name, j + 1) for j in range(k)], count))
         for key in (("angle", name), *(("angles", name, j + 1) for j in range(k))):
             if key in values:

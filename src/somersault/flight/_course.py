@@ -12,10 +12,12 @@ from dataclasses import replace
 import numpy as np
 
 from somersault._array import Array
-from somersault.dynamics._integrator import FIRST_STEP, STATUS, Solution
-from somersault.flight._columns import Numbers, path, row
+from somersault.dynamics._integrator import FIRST_STEP, MOST_STEPS, STATUS, Solution
+from somersault.flight._columns import Name, Numbers, path, row
 from somersault.flight._path import Path
-from somersault.flight._system import System, moves_freely
+from somersault.flight._start import Starts, momentum
+from somersault.flight._symbols import PATH, parameter_count
+from somersault.flight._system import System
 from somersault.flight._takeoff import JointPlan
 
 _FLYING = next(code for code, word in STATUS.items() if word == "duration")
@@ -25,33 +27,33 @@ class Course:
     """The parameters of N flights as time goes on, and the times at which they change."""
 
     def __init__(
-        self, system: System, plans: tuple[JointPlan, ...], values: Numbers, q: Array,
-        count: int, duration: float,
-    ) -> None:  # fmt: skip
-        """`q` (count, coordinates) is the pose at takeoff."""
-        self.count, self.duration = count, duration
+        self, system: System, plans: tuple[JointPlan, ...], begun: Starts, duration: float
+    ) -> None:
+        self.duration = duration
         self._system, self._plans = system, plans
+        count = len(begun.q)
         self._paths: dict[str, Path] = {
-            plan.joint.name: path(plan, values, count)
-            for plan in plans
-            if plan.motion == "prescribed"
+            plan.joint.name: path(plan, begun.values, count) for plan in plans if plan.on_path
         }
-        self._still = self._constants(values, q, count)
+        self._still = self._constants(begun)
         self.ends = self._knots()
 
-    def _constants(self, values: Numbers, q: Array, count: int) -> Array:
-        """Parameters that stay, with room for those of paths, (count, parameters)."""
-        parts = [row(values, [(name,) for name in self._system.bodies], count)]
-        place = 0
+    def _constants(self, begun: Starts) -> Array:
+        """Parameters that stay, with room for those of paths, (N, parameters)."""
+        parts, place = [begun.bodies], 0
         for plan in self._plans:
-            joint = plan.joint
-            if plan.motion == "prescribed":
-                parts.append(np.zeros((count, 7)))
+            if plan.on_path:
+                parts.append(np.zeros((len(begun.q), PATH)))
+                if plan.motion == "compliant":
+                    names: list[Name] = [(g, plan.joint.name) for g in ("stiffness", "damping")]
+                    parts.append(row(begun.values, names, len(begun.q)))
             elif plan.motion == "locked":
-                parts.append(q[:, place : place + joint.coordinates])
+                parts.append(begun.q[:, place : place + plan.joint.coordinates])
             else:
-                parts.append(_spring(plan, values, count))
-            place += joint.coordinates
+                parts.append(_spring(plan, begun.values, len(begun.q)))
+            place += plan.joint.coordinates
+        if self._system.symbols.bound:
+            parts.append(momentum(self._system, begun))
         return np.concatenate(parts, 1)
 
     def _knots(self) -> Array:
@@ -73,19 +75,16 @@ class Course:
         result = np.repeat(self._still[:, None], times.shape[1], 1)
         place = len(self._system.bodies)
         for plan in self._plans:
-            if plan.motion == "prescribed":
+            if plan.on_path:
                 since, coefficients = self._paths[plan.joint.name].at(times)
                 result[..., place] = since
-                result[..., place + 1 : place + 7] = coefficients
-                place += 7
-            else:
-                place += plan.joint.coordinates if plan.motion == "locked" else 4
+                result[..., place + 1 : place + PATH] = coefficients
+            place += parameter_count(plan.joint, plan.kind)
         return result
 
 
 def _spring(plan: JointPlan, values: Numbers, count: int) -> Array:
     """Stiffness, rest, damping and pretension of a joint that moves freely, (count, 4)."""
-    assert moves_freely(plan.motion)
     name = plan.joint.name
     own = np.empty((count, 4))
     own[:, 0] = values.get(("stiffness", name), 0.0)
@@ -98,7 +97,7 @@ def _spring(plan: JointPlan, values: Numbers, count: int) -> Array:
 
 def solve(
     system: System, first: Array, course: Course, samples: Array, tolerance: float,
-    watched: Array | None = None,
+    watched: Array | None = None, most_steps: float = MOST_STEPS,
 ) -> Solution:  # fmt: skip
     """From states `first` (N, n) along a course, with states at increasing `samples` (K,).
 
@@ -109,7 +108,9 @@ def solve(
     ends = np.broadcast_to(course.ends, (count, course.ends.shape[1]))
     if ends.shape[1] == 1:
         parameters = course.parameters(begin[:, None])[:, 0]
-        return system.integrator.solve(first, parameters, samples, tolerance, watched=watched)
+        return system.integrator.solve(
+            first, parameters, samples, tolerance, watched=watched, most_steps=most_steps
+        )
     whole: Solution | None = None
     for piece in range(ends.shape[1]):
         end = ends[:, piece]
@@ -118,11 +119,11 @@ def solve(
         inside[0] |= piece == 0
         chosen = samples[inside]
         final = piece == ends.shape[1] - 1
-        if not final and (not chosen.size or chosen[-1] < end.max()):
+        if not chosen.size or (not final and chosen[-1] < end.max()):
             chosen = np.append(chosen, end.max())
         if whole is None:
             found = system.integrator.solve(
-                first, parameters, chosen, tolerance, end, watched=watched
+                first, parameters, chosen, tolerance, end, watched=watched, most_steps=most_steps
             )
             whole = _opened(found, len(samples))
         else:
@@ -131,7 +132,7 @@ def solve(
             found = system.integrator.solve(
                 whole.final, parameters, chosen, tolerance, np.where(flying, end, begin),
                 begin=begin, step=np.where(whole.step > 0, whole.step, FIRST_STEP),
-                watched=whole.watched_final,
+                watched=whole.watched_final, most_steps=np.maximum(most_steps - whole.steps, 1),
             )  # fmt: skip
         whole = _joined(whole, found, samples, inside, begin, piece)
         begin = np.where(whole.status == _FLYING, end, whole.end)

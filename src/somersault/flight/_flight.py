@@ -72,17 +72,53 @@ class Flight:
         return states
 
     @cached_property
-    def _joints(self) -> tuple[Array, Array]:
-        return self._read(self.states, self.times)
+    def _read(self) -> tuple[Array, Array, Array]:
+        """ω, joint coordinates and speeds at the sample times."""
+        return self.system.read(self._states[self._keep], self.times, self._parameters)
 
-    def _read(self, states: Array, times: Array) -> tuple[Array, Array]:
-        return self.system.joint_states(states, times, self._course.parameters(times[None])[0])
+    @property
+    def _parameters(self) -> Array:
+        return self._course.parameters(self.times[None])[0]
+
+    @property
+    def angular_velocity(self) -> Array:
+        """In body axes, (time, 3), rad/s."""
+        return self._read[0]
+
+    @property
+    def _joints(self) -> tuple[Array, Array]:
+        return self._read[1:]
+
+    @cached_property
+    def _loads(self) -> Array:
+        x = [self._states[self._keep], self.times[:, None], self._parameters]
+        return self.system.loads(np.concatenate(x, 1))
+
+    @property
+    def joint_torques(self) -> xr.DataArray:
+        """What acts at the joints, by springs, dampers and muscles, (time, joint speeds), N m (N):
+        the inverse dynamics of the flight."""
+        import xarray as xr
+
+        return xr.DataArray(
+            self._loads[:, 6:],
+            {"time": self.times, "joint_speed": list(self.system.model.speeds)},
+            ("time", "joint_speed"),
+            "joint_torque",
+            {"units": "N m or N"},
+        )
+
+    @property
+    def external_moment(self) -> Array:
+        """What the motion would need from outside, about the base's centre of mass and in body
+        axes, (time, 3), N m: zero, but for rounding."""
+        return self._loads[:, :3]
 
     @cached_property
     def _speeds(self) -> Array:
         """(ω, velocity of the base with the centre of mass at rest, joint speeds)."""
         q, u = self._joints
-        still = np.concatenate([self.states[:, 4:7], np.zeros((len(u), 3)), u], 1)
+        still = np.concatenate([self.angular_velocity, np.zeros((len(u), 3)), u], 1)
         linear = self.system.equations.momentum(q, still)[:, 3:]
         still[:, 3:6] = -linear / self.system.model.mass
         return still
@@ -120,7 +156,7 @@ class Flight:
     @property
     def conservative(self) -> bool:
         """Whether energy is kept: nothing damped, nothing driven."""
-        return not any(p.damping or p.motion == "prescribed" for p in self.start.plans)
+        return not any(p.damping or p.on_path for p in self.start.plans)
 
     @property
     def energy_drift(self) -> float | None:
@@ -135,10 +171,11 @@ class Flight:
         """How it ended."""
         somersault, tilt, twist = self._angles[-1].tolist()
         state, time = self._states[-1], self._moments[-1]
-        q, _ = self._read(self._states[-1:], self._moments[-1:])
+        last = self._course.parameters(self._moments[None, -1:])[0]
+        omega, q, _ = self.system.read(self._states[-1:], self._moments[-1:], last)
         return Landing(
             float(time), somersault, tilt, twist,
-            state[:4] / np.linalg.norm(state[:4]), state[4:7],
+            state[:4] / np.linalg.norm(state[:4]), omega[0],
             dict(zip(self.system.model.coordinates, q[0].tolist(), strict=True)), self.ended,
         )  # fmt: skip
 
@@ -160,7 +197,7 @@ class Flight:
             "tilt": ("time", angles[:, 1], rad),
             "twist": ("time", angles[:, 2], rad),
             "quaternion": (("time", "component"), self.states[:, :4], {"units": "1"}),
-            "angular_velocity": (("time", "body_axis"), self.states[:, 4:7], {"units": "rad/s"}),
+            "angular_velocity": (("time", "body_axis"), self.angular_velocity, {"units": "rad/s"}),
             "joint_angle": (("time", "joint"), q, {"units": "rad or m"}),
             "joint_rate": (("time", "joint_speed"), u, {"units": "rad/s or m/s"}),
             "angular_momentum": (

@@ -12,7 +12,6 @@ from somersault._array import Array
 from somersault._errors import SomersaultError
 from somersault.attitude import angles_from_quaternion
 from somersault.dynamics._integrator import STATUS
-from somersault.flight._columns import numbers as columns
 from somersault.flight._course import Course, solve
 from somersault.flight._flight import Flight
 from somersault.flight._numbers import number, numbers
@@ -58,7 +57,7 @@ def fly(
     g = numbers("gravity", gravity, 3)
     check_ending(accuracy, until)
     joints = plans(model, takeoff.joints)
-    chosen = system(model, kinds(joints), until)
+    chosen = system(model, kinds(joints), until, tape=takeoff.tape is not None)
     begun = start(chosen, takeoff, joints)
     return _flown(chosen, begun, takeoff, times, duration, g, accuracy)
 
@@ -96,9 +95,9 @@ def _flown(
     accuracy: float,
 ) -> Flight:
     """Solve on points that are close enough to count turns on, if need be again on closer ones."""
-    values = columns(takeoff, begun.plans)
-    course = Course(chosen, begun.plans, values, begun.q[None], 1, duration)
-    first = chosen.start(begun.quaternion, begun.omega, begun.q, begun.u)
+    many = begun.many
+    course = Course(chosen, begun.plans, many, duration)
+    first = chosen.start(many.quaternion, many.omega, many.q, many.u, takeoff.tape)[0]
     points = _first_points(chosen, begun, np.union1d(times, [0.0, duration]))
     for _ in range(_MOST_REFINEMENTS):
         solution = solve(chosen, first[None], course, points, accuracy * TOLERANCE_PER_ACCURACY)

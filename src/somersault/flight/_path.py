@@ -31,6 +31,12 @@ class Path:
     knots: Array
     coefficients: Array
 
+    def image(self, sign: float, offset: float) -> Path:
+        """The path sign · this + offset."""
+        coefficients = sign * self.coefficients
+        coefficients[..., 0] += offset
+        return Path(self.knots, coefficients)
+
     def at(self, times: Array) -> tuple[Array, Array]:
         """Origins (N, K) and coefficients (N, K, 6) that hold at times (N, K), and after them."""
         place = (self.knots[..., None, :] <= times[..., None]).sum(-1)

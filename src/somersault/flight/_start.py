@@ -53,6 +53,7 @@ class Start:
     momentum: Array
     angles: Array
     plans: tuple[JointPlan, ...]
+    many: Starts
 
 
 def start(system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...]) -> Start:
@@ -66,7 +67,7 @@ def start(system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...]) -> Sta
     return Start(
         found.quaternion[0], found.omega[0], found.q[0], found.u[0], momentum(system, found)[0],
         found.angles[0],
-        tuple(replace(p, pretension=held.get(p.joint.name, p.pretension)) for p in plans),
+        tuple(replace(p, pretension=held.get(p.joint.name, p.pretension)) for p in plans), found,
     )  # fmt: skip
 
 

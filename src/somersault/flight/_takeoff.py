@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -15,7 +15,9 @@ from somersault.model import Joint, Model
 from somersault.model._mirror import mirror_pairs
 
 LIMIT_SLACK = 1e-9  # rad beyond a joint's limits that count as within
-Motion = Literal["locked", "free", "sprung", "prescribed"]
+Motion = Literal["locked", "free", "sprung", "prescribed", "compliant"]
+Kind = Literal["locked", "free", "sprung", "prescribed", "compliant", "following"]
+_ON_PATHS = ("prescribed", "compliant")
 
 
 @dataclass(frozen=True)
@@ -25,10 +27,13 @@ class JointTakeoff:
     "locked" holds its angle; "free" swings; "sprung" has stiffness (N m/rad), damping
     (N m s/rad) and a rest angle, or with `hold` is pretensioned so that at its takeoff angle
     it balances the nominal spin; "prescribed" moves smoothly through `angles` at `times` (s),
-    at rest at each. `pretension` (N m) is a constant torque beside the spring's and beside what
-    `hold` gives. A ball's `angle` is a rotation vector and its `rate` an angular velocity, both
-    along its body's axes. What is None comes from the model: sprung where it has stiffness or is
-    given some, else locked at the pose in which the file draws it.
+    at rest at each, or along a `path`; "compliant" is a spring and a damper about such a path,
+    beside the torque of the takeoff's motor tape, and with `following` its stiffness and
+    damping are those of an inertia of 1 kg m², and are multiplied by what is outboard of the joint
+    in the path's own pose, as it changes. `pretension` (N m) is a constant torque beside the
+    spring's and beside what `hold` gives. A ball's `angle` is a rotation vector and its `rate` an
+    angular velocity, both along its body's axes. What is None comes from the model: sprung where
+    it has stiffness or is given some, else locked at the pose in which the file draws it.
     """
 
     motion: Motion | None = None
@@ -41,6 +46,8 @@ class JointTakeoff:
     hold: bool = False
     times: Sequence[float] = ()
     angles: Sequence[float] = ()
+    path: Path | None = None
+    following: bool = False
 
 
 @dataclass(frozen=True)
@@ -51,7 +58,9 @@ class Takeoff:
     `spin` (rad/s about inertial axis 2, the rate of the nominal steady spin: Φ̇ = spin, and
     Θ̇ and Ψ̇ are `tilt_rate` and `twist_rate`, whatever the attitude), `angular_velocity` (body
     axes) or `angular_momentum` (inertial axes, kg m²/s).
-    `velocity` is that of the centre of mass (m/s).
+    `velocity` is that of the centre of mass (m/s). `tape` is the angular velocity (body axes) at
+    takeoff of the nominal flight whose joint torques are replayed to compliant joints: that of
+    the same paths, exactly followed.
     """
 
     somersault: float = 0.0
@@ -64,6 +73,7 @@ class Takeoff:
     angular_velocity: Sequence[float] | None = None
     angular_momentum: Sequence[float] | None = None
     velocity: Sequence[float] = (0.0, 0.0, 0.0)
+    tape: Sequence[float] | None = None
     joints: Mapping[str, JointTakeoff] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -77,6 +87,7 @@ class Takeoff:
             ("angular_velocity", 3),
             ("angular_momentum", 3),
             ("velocity", 3),
+            ("tape", 3),
         ):
             if getattr(self, name) is not None or name == "velocity":
                 most = np.inf if name == "quaternion" else MOST  # of any length
@@ -114,16 +125,23 @@ class JointPlan:
     hold: bool = False
     times: tuple[float, ...] = ()
     angles: tuple[float, ...] = ()
+    given: Path | None = None
+    following: bool = False
 
     @property
-    def path(self) -> Path:
-        """How a prescribed joint moves."""
-        return moves(np.array(self.times), np.array(self.angles))
+    def on_path(self) -> bool:
+        """Whether it is moved, or pulled, along a path."""
+        return self.motion in _ON_PATHS
+
+    @property
+    def kind(self) -> Kind:
+        """What the equations must know of it."""
+        return "following" if self.following else self.motion
 
 
-def kinds(plans: tuple[JointPlan, ...]) -> tuple[Motion, ...]:
+def kinds(plans: tuple[JointPlan, ...]) -> tuple[Kind, ...]:
     """What each joint does: flights that do the same share their equations."""
-    return tuple(plan.motion for plan in plans)
+    return tuple(plan.kind for plan in plans)
 
 
 def plans(model: Model, joints: Mapping[str, JointTakeoff]) -> tuple[JointPlan, ...]:
@@ -165,6 +183,9 @@ def _mirrored(takeoff: JointTakeoff, left: Joint, right: Joint, sign: int) -> Jo
         rest=image(takeoff.rest),
         pretension=sign * number(f"joint {left.name}: pretension", takeoff.pretension),
         angles=[image(angle) or 0.0 for angle in takeoff.angles],
+        path=None
+        if takeoff.path is None
+        else takeoff.path.image(sign, right.reference - sign * left.reference),
     )
 
 
@@ -175,18 +196,20 @@ def _plan(joint: Joint, given: JointTakeoff) -> JointPlan:
             number(f"{where}: {name}", getattr(given, name))
     motion = _motion(joint, given, where)
     pretension = number(f"{where}: pretension", given.pretension)
-    if pretension and motion in ("locked", "prescribed"):
+    if pretension and motion in ("locked", *_ON_PATHS):
         raise SomersaultError(f"{where} is {motion}, so its pretension would do nothing")
     if joint.kind == "ball" and pretension:
         raise SomersaultError(f"{where} is a ball, which takes no pretension; leave it out")
-    if joint.kind == "ball" and (given.rest is not None or given.hold or motion == "prescribed"):
+    if joint.kind == "ball" and (given.rest is not None or given.hold or motion in _ON_PATHS):
         raise SomersaultError(
             f"{where} is a ball: it can be locked, free or sprung about the pose it is drawn in"
         )
-    if motion == "prescribed":
-        return _prescribed(joint, given, where)
-    if len(given.times) or len(given.angles):
-        raise SomersaultError(f"{where} has times or angles but is {motion}, not prescribed")
+    if motion in _ON_PATHS:
+        return _along_path(joint, motion, given, where)
+    if len(given.times) or len(given.angles) or given.path is not None or given.following:
+        raise SomersaultError(
+            f"{where} has a path or times but is {motion}, not prescribed or compliant"
+        )
     position, rate = _position(joint, given, where)
     if motion == "locked" and (any(rate) or given.damping):
         raise SomersaultError(f"{where} is locked; leave its rate and damping out")
@@ -226,33 +249,47 @@ def _motion(joint: Joint, given: JointTakeoff, where: str) -> Motion:
     if given.motion is None:
         sprung = joint.stiffness > 0 if given.stiffness is None else True
         return "sprung" if sprung else "locked"
-    if given.motion not in ("locked", "free", "sprung", "prescribed"):
+    if given.motion not in get_args(Motion):
         raise SomersaultError(
-            f"{where}: {given.motion!r} is no motion; use locked, free, sprung or prescribed"
+            f"{where}: {given.motion!r} is no motion; use {', '.join(get_args(Motion))}"
         )
-    if given.motion != "sprung" and (given.stiffness or given.rest is not None):
+    springs = given.stiffness and given.motion != "compliant"
+    if given.motion != "sprung" and (springs or given.rest is not None):
         raise SomersaultError(
             f"{where} is {given.motion}, so its spring would do nothing; leave it out"
         )
     return given.motion
 
 
-def _prescribed(joint: Joint, given: JointTakeoff, where: str) -> JointPlan:
-    times = numbers(f"{where}: times", given.times)
-    angles = numbers(f"{where}: angles", given.angles)
-    try:
-        check(times, angles)
-    except SomersaultError as mistake:
-        raise SomersaultError(f"{where}: its prescribed path {mistake}") from None
-    # A smooth move does not overshoot its ends.
-    _within(joint, float(angles.min()), float(angles.max()), where)
-    if given.angle is not None or given.rate or given.damping:
-        raise SomersaultError(f"{where} is prescribed: its angle and rate come from its path")
-    knots, held = tuple(times.tolist()), tuple(angles.tolist())
-    angle, rate = value(moves(times, angles), 0.0)
+def _along_path(joint: Joint, motion: Motion, given: JointTakeoff, where: str) -> JointPlan:
+    if given.angle is not None or given.rate or (given.damping and motion == "prescribed"):
+        raise SomersaultError(f"{where} is {motion}: its angle and rate come from its path")
+    if given.following and motion != "compliant":
+        raise SomersaultError(f"{where} is {motion}, so it has no stiffness that could follow")
+    if motion == "compliant" and (given.stiffness is None or given.damping is None):
+        raise SomersaultError(f"{where} is compliant; give its stiffness and damping")
+    knots: tuple[float, ...] = ()
+    held: tuple[float, ...] = ()
+    if given.path is not None:
+        if len(given.times) or len(given.angles):
+            raise SomersaultError(f"{where} has both a path and times with angles; give one")
+        whole = given.path  # of a `Motion`, which has seen to limits with a slack of its own
+    else:
+        times = numbers(f"{where}: times", given.times)
+        angles = numbers(f"{where}: angles", given.angles)
+        try:
+            check(times, angles)
+        except SomersaultError as mistake:
+            raise SomersaultError(f"{where}: its path {mistake}") from None
+        knots, held = tuple(times.tolist()), tuple(angles.tolist())
+        whole = moves(times, angles)
+        # A smooth move does not overshoot its ends.
+        _within(joint, min(held), max(held), where)
+    angle, rate = value(whole, 0.0)
     return JointPlan(
-        joint, "prescribed", (angle,), (rate,), 0.0, 0.0, 0.0, times=knots, angles=held
-    )
+        joint, motion, (angle,), (rate,), given.stiffness or 0.0, given.damping or 0.0, 0.0,
+        times=knots, angles=held, given=given.path, following=given.following,
+    )  # fmt: skip
 
 
 def _within(joint: Joint, low: float, high: float, where: str) -> None:

@@ -91,15 +91,15 @@ def _wrapped(angle: Any) -> Any:
 
 def _named(quantities: Quantities, angles: list[Any], y: Any, t: Any, p: Any) -> dict[str, Any]:
     _, tilt, twist = angles
-    w1, w2, w3 = (y[4 + k] for k in range(3))
+    known = quantities(y, t, p)
+    w1, w2, w3 = (known[name] for name in VELOCITIES)
     somersaulting = (ca.sin(twist) * w1 + ca.cos(twist) * w2) / ca.cos(tilt)  # eq. 2.3
     tilting = ca.cos(twist) * w1 - ca.sin(twist) * w2
     rates = [somersaulting, tilting, w3 + ca.sin(tilt) * somersaulting]
     return {
         **dict(zip(ANGLES, angles, strict=True)),
         **dict(zip(RATES, rates, strict=True)),
-        **dict(zip(VELOCITIES, (w1, w2, w3), strict=True)),
-        **quantities(y, t, p),
+        **known,
     }
 
 

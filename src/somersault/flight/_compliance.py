@@ -1,0 +1,128 @@
+"""From a motion that is followed exactly to a body that gives way about it.
+
+Compliance as in Playter (1994), section 6.3.3: at every joint on a path a spring and a damper
+about the path, beside the torques of the nominal flight replayed as a motor tape. All gains come
+from one number, the body-clamped natural frequency ω_n: with everything inboard held still and
+everything outboard rigid, I ẍ + 2 ζ ω_n I ẋ + ω_n² I x = 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from somersault._array import Array
+from somersault._errors import SomersaultError
+from somersault.dynamics import Equations
+from somersault.flight._columns import rotation_vector
+from somersault.flight._numbers import number
+from somersault.flight._path import moves, value
+from somersault.flight._start import start
+from somersault.flight._system import system
+from somersault.flight._takeoff import JointPlan, JointTakeoff, Takeoff, kinds, plans
+from somersault.model import Model, load
+from somersault.model._pose import pose as posed
+
+
+def compliant(
+    model: str | Model,
+    takeoff: Takeoff,
+    natural_frequency: float,
+    damping_ratio: float = 0.7,
+    *,
+    pose: Mapping[str, float] | float | Literal["following"],
+    tape: bool = True,
+) -> Takeoff:
+    """The takeoff of a body that is compliant about the motion that `takeoff` prescribes.
+
+    Every prescribed joint gets k = ω_n² I and c = 2 ζ ω_n I (ω_n in rad/s), I its outboard
+    inertia in a `pose`: angles by name, or the motion's own at a time in s, or "following" it as
+    it changes. With `tape` the joint torques of the nominal flight act besides: of exactly this
+    takeoff, prescribed. The angular momentum is given in inertial axes, so that a change of
+    attitude does not merely turn the whole flight. Raises SomersaultError where nothing is
+    prescribed.
+    """
+    model = load(model)
+    joints = plans(model, takeoff.joints)
+    on_path = [plan for plan in joints if plan.motion == "prescribed"]
+    if not on_path:
+        raise SomersaultError("nothing is prescribed in this takeoff, so nothing can be compliant")
+    omega_n = number("natural_frequency", natural_frequency)
+    zeta = number("damping_ratio", damping_ratio)
+    if omega_n <= 0 or zeta < 0:
+        raise SomersaultError(
+            f"natural_frequency {omega_n:g} and damping_ratio {zeta:g} must be positive"
+        )
+    begun = start(system(model, kinds(joints), None), takeoff, joints)
+    inertias = np.ones(len(model.speeds))
+    if pose != "following":
+        inertias = Equations(model).outboard_inertia(_pose(model, joints, pose))
+    given = dict(_by_name(joints))
+    for plan in on_path:
+        inertia = float(inertias[model.speed_slice(plan.joint.name).start])
+        given[plan.joint.name] = JointTakeoff(
+            "compliant", times=plan.times, angles=plan.angles, path=plan.given,
+            stiffness=omega_n**2 * inertia, damping=2 * zeta * omega_n * inertia,
+            following=pose == "following",
+        )  # fmt: skip
+    return replace(
+        _with_momentum(takeoff, begun.momentum),
+        tape=tuple(begun.omega.tolist()) if tape else None,
+        joints=given,
+    )
+
+
+def with_momentum(model: str | Model, takeoff: Takeoff) -> Takeoff:
+    """The same takeoff, its rotation given as angular momentum in inertial axes.
+
+    Then attitude can be varied with the momentum staying where it is; with rates the whole
+    flight would turn along.
+    """
+    model = load(model)
+    joints = plans(model, takeoff.joints)
+    return _with_momentum(
+        takeoff, start(system(model, kinds(joints), None), takeoff, joints).momentum
+    )
+
+
+def _with_momentum(takeoff: Takeoff, momentum: Array) -> Takeoff:
+    return replace(
+        takeoff, spin=None, tilt_rate=0.0, twist_rate=0.0, angular_velocity=None,
+        angular_momentum=tuple(momentum.tolist()),
+    )  # fmt: skip
+
+
+def _by_name(joints: tuple[JointPlan, ...]) -> list[tuple[str, JointTakeoff]]:
+    """What every other joint does, spelled out."""
+    found = []
+    for plan in joints:
+        if plan.motion == "locked":
+            ball = plan.joint.kind == "ball"
+            angle = rotation_vector(plan) if ball else plan.position[0]
+            found.append((plan.joint.name, JointTakeoff("locked", angle=angle)))
+        elif plan.motion != "prescribed":
+            raise SomersaultError(
+                f"joint {plan.joint.name} is {plan.motion}; beside compliant joints there are "
+                "prescribed and locked ones"
+            )
+    return found
+
+
+def _pose(
+    model: Model, joints: tuple[JointPlan, ...], pose: Mapping[str, float] | float | str
+) -> Array:
+    """Joint coordinates (coordinates,) of a pose by name, or of the motion at a time."""
+    if isinstance(pose, Mapping):
+        return posed(model, pose)
+    time = number("pose", pose)
+    values: list[float] = []
+    for plan in joints:
+        if plan.motion == "prescribed":
+            whole = plan.given or moves(np.array(plan.times), np.array(plan.angles))
+            values.append(value(whole, time)[0])
+        else:
+            values += plan.position
+    return np.array(values)

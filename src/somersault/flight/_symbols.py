@@ -1,0 +1,287 @@
+"""The equations of a flight in symbols: from state, time and parameters to rates and torques.
+
+The state is (quaternion, ω, coordinates and speeds of the joints that move freely, ω of the
+motor tape's nominal flight). Where no joint moves freely only the attitude is unknown: then the
+state is the quaternion alone, and ω is what the angular momentum, a parameter, leaves it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+
+from somersault.dynamics._articulated import forward_dynamics
+from somersault.dynamics._composite import composites, outboard_inertia
+from somersault.dynamics._motion import place
+from somersault.dynamics._newton_euler import inverse_dynamics, momentum
+from somersault.dynamics._springs import torques as spring_torques
+from somersault.dynamics._tree import tree
+from somersault.dynamics._vector import Vec, matvec, solve_symmetric, vsub
+from somersault.flight._path import DEGREE, polynomial
+from somersault.flight._takeoff import Kind
+from somersault.model import Joint, Model
+
+ATTITUDE, RATE = 4, 3  # of a state: quaternion and ω
+SPRING = ("stiffness", "rest", "damping", "pretension")  # parameters of a joint that moves
+PATH = 1 + DEGREE + 1  # parameters of a path: since when, and its polynomial
+GAINS = 2  # of a compliant joint: stiffness and damping
+_ON_PATHS = ("prescribed", "compliant", "following")
+
+
+def moves_freely(kind: Kind) -> bool:
+    """Whether a joint is part of the state."""
+    return kind not in ("locked", "prescribed")
+
+
+def parameter_count(joint: Joint, kind: Kind) -> int:
+    """How many parameters a joint has."""
+    if kind == "prescribed":
+        return PATH
+    if kind in _ON_PATHS:
+        return PATH + GAINS
+    return joint.coordinates if kind == "locked" else len(SPRING)
+
+
+@dataclass(frozen=True)
+class _Joint:
+    """A joint in symbols: where it is, and where its path would have it."""
+
+    joint: Joint
+    position: list[Any]
+    rate: list[Any]
+    acceleration: list[Any] | None
+    """None where it moves freely."""
+    wanted: tuple[Any, Any, Any] | None
+    """Value, rate and acceleration of its path."""
+    numbers: dict[str, Any]
+
+
+class Symbols:
+    """State `y`, time `t` and parameters `p` of a model's flight, and what follows from them."""
+
+    def __init__(
+        self, model: Model, kinds: tuple[Kind, ...], bodies: tuple[str, ...], tape: bool
+    ) -> None:
+        self.model, self.kinds, self.bodies, self.tape = model, kinds, bodies, tape
+        pairs = list(zip(model.joints, kinds, strict=True))
+        moving = [j for j, k in pairs if moves_freely(k)]
+        self.bound = not moving
+        self.base = ATTITUDE if self.bound else ATTITUDE + RATE
+        self.coordinates = sum(j.coordinates for j in moving)
+        self.moving = self.base + self.coordinates + sum(j.speeds for j in moving)
+        self.state = self.moving + (RATE if tape else 0)
+        self.of_joints = sum(parameter_count(j, k) for j, k in pairs)
+        self.parameters = len(bodies) + self.of_joints + (RATE if self.bound else 0)
+        self.y = ca.SX.sym("y", self.state)
+        self.t = ca.SX.sym("t")
+        self.p = ca.SX.sym("p", self.parameters)
+
+    @property
+    def x(self) -> Any:
+        """State, time and parameters joined."""
+        return ca.vertcat(self.y, self.t, self.p)
+
+    @cached_property
+    def tree(self) -> Any:
+        """The links, with the bodies' numbers that are parameters."""
+        return tree(self.model, {name: self.p[k] for k, name in enumerate(self.bodies)})
+
+    @cached_property
+    def joints(self) -> list[_Joint]:
+        """Each joint."""
+        found = []
+        q, u, p = self.base, self.base + self.coordinates, len(self.bodies)
+        for joint, kind in zip(self.model.joints, self.kinds, strict=True):
+            own = [self.p[p + k] for k in range(parameter_count(joint, kind))]
+            p += len(own)
+            wanted = None
+            if kind in _ON_PATHS:
+                wanted = polynomial(self.t - own[0], own[1:PATH])
+            if kind == "prescribed":
+                assert wanted is not None
+                value, rate, acceleration = wanted
+                found.append(_Joint(joint, [value], [rate], [acceleration], wanted, {}))
+                continue
+            if kind == "locked":
+                still: list[Any] = [0.0] * joint.speeds
+                found.append(_Joint(joint, own, still, still, None, {}))
+                continue
+            at = [self.y[q + k] for k in range(joint.coordinates)]
+            moving = [self.y[u + k] for k in range(joint.speeds)]
+            q, u = q + joint.coordinates, u + joint.speeds
+            numbers: dict[str, Any] = dict(zip(SPRING, own, strict=False))
+            if kind == "free":
+                numbers["stiffness"] = 0.0
+            if wanted is not None:
+                numbers = dict(zip(("stiffness", "damping"), own[PATH:], strict=True))
+            found.append(_Joint(joint, at, moving, None, wanted, numbers))
+        return found
+
+    @cached_property
+    def quaternion(self) -> list[Any]:
+        """Attitude, body to inertial."""
+        return [self.y[k] for k in range(ATTITUDE)]
+
+    @cached_property
+    def omega(self) -> list[Any]:
+        """Angular velocity in the base's axes."""
+        if not self.bound:
+            return [self.y[ATTITUDE + k] for k in range(RATE)]
+        still: Vec = [0.0, 0.0, 0.0]
+        own = momentum(self.tree, self.position, still, still, self.rate).angular
+        whole = composites(self.tree, place(self.tree, self.position))[0].about_centre
+        h = [self.p[self.parameters - RATE + k] for k in range(RATE)]
+        left = vsub(_into_body(self.quaternion, h), own)
+        return solve_symmetric(whole, [left])[0]
+
+    @cached_property
+    def position(self) -> list[Any]:
+        """Coordinates of all joints."""
+        return [x for j in self.joints for x in j.position]
+
+    @cached_property
+    def rate(self) -> list[Any]:
+        """Speeds of all joints."""
+        return [x for j in self.joints for x in j.rate]
+
+    @cached_property
+    def _driven(self) -> dict[int, Any]:
+        known = [a for j in self.joints for a in (j.acceleration or [None] * len(j.rate))]
+        return {k: a for k, a in enumerate(known) if a is not None}
+
+    @cached_property
+    def torques(self) -> list[Any]:
+        """What acts at each joint speed: springs, dampers, pretension, compliance, tape."""
+        passive = {
+            f"{what}.{j.joint.name}": 0.0 if j.wanted else value
+            for j in self.joints
+            for what, value in j.numbers.items()
+        }
+        acting = spring_torques(self.model, self.position, self.rate, passive)
+        taped, follows = self._tape, self._outboard
+        found, place = [], 0
+        for joint, kind in zip(self.joints, self.kinds, strict=True):
+            for _ in joint.rate:
+                load = acting[place] + joint.numbers.get("pretension", 0.0)
+                if joint.wanted is not None and joint.acceleration is None:
+                    by = follows[place] if kind == "following" else 1.0
+                    value, rate, _ = joint.wanted
+                    k, c = joint.numbers["stiffness"], joint.numbers["damping"]
+                    load = by * (k * (value - joint.position[0]) + c * (rate - joint.rate[0]))
+                    if taped is not None:
+                        load = load + taped.torques[place]
+                found.append(load)
+                place += 1
+        return found
+
+    @cached_property
+    def accelerations(self) -> tuple[Vec, Vec, list[Any]]:
+        """Of the base, of its centre of mass, and of all joint speeds."""
+        return forward_dynamics(
+            self.tree, self.position, self.omega, self.rate, self.torques, [0.0] * 3, self._driven
+        )
+
+    @cached_property
+    def slope(self) -> Any:
+        """The rate of the state."""
+        rates = quaternion_rate(self.quaternion, self.omega)
+        if not self.bound:
+            alpha, _, joints = self.accelerations
+            moving = [j for j in self.joints if j.acceleration is None]
+            rates = [*rates, *alpha, *(x for j in moving for x in _coordinate_rates(j))]
+            rates += [a for k, a in enumerate(joints) if k not in self._driven]
+        if self._tape is not None:
+            rates = [*rates, *self._tape.alpha]
+        return ca.vertcat(*rates)
+
+    @cached_property
+    def gauge(self) -> Any:
+        """cos Θ cos Ψ (eq. 2.2): its sign changes at a quarter twist."""
+        _, x, _, z = self.quaternion
+        return 1 - 2 * (x * x + z * z)
+
+    @cached_property
+    def loads(self) -> Any:
+        """Moment and force that the base would need from outside, then what acts at the joints:
+        the motion's own inverse dynamics, with torques that prescribed joints need."""
+        alpha, acceleration, joints = self.accelerations
+        moment, force, torques = inverse_dynamics(
+            self.tree, self.position, self.omega, self.rate, alpha, acceleration, joints
+        )
+        return ca.vertcat(*moment, *force, *torques)
+
+    # ------------------------------------------------------------------- the motor tape
+
+    @cached_property
+    def _paths(self) -> tuple[list[Any], list[Any], list[Any]]:
+        """Coordinates, speeds and accelerations of the nominal motion."""
+        q: list[Any] = []
+        u: list[Any] = []
+        a: list[Any] = []
+        for joint in self.joints:
+            if joint.wanted is None:
+                q, u = [*q, *joint.position], [*u, *joint.rate]
+                a += joint.acceleration or [0.0] * len(joint.rate)
+            else:
+                value, rate, acceleration = joint.wanted
+                q, u, a = [*q, value], [*u, rate], [*a, acceleration]
+        return q, u, a
+
+    @cached_property
+    def _outboard(self) -> list[Any]:
+        """Inertia outboard of each joint speed in the paths' pose."""
+        if "following" not in self.kinds:
+            return []
+        return outboard_inertia(self.tree, place(self.tree, self._paths[0]))
+
+    @cached_property
+    def _tape(self) -> _Tape | None:
+        """The nominal flight's own motion, and the torques that it takes."""
+        if not self.tape:
+            return None
+        q, u, a = self._paths
+        omega = [self.y[self.moving + k] for k in range(RATE)]
+        alpha, acceleration, _ = forward_dynamics(
+            self.tree, q, omega, u, [0.0] * len(u), [0.0] * 3, dict(enumerate(a))
+        )
+        _, _, torques = inverse_dynamics(self.tree, q, omega, u, alpha, acceleration, a)
+        return _Tape(alpha, torques)
+
+
+@dataclass(frozen=True)
+class _Tape:
+    alpha: list[Any]
+    torques: list[Any]
+
+
+def _into_body(quaternion: list[Any], vector: list[Any]) -> list[Any]:
+    """An inertial vector in the body's axes, for a quaternion of any length."""
+    w, x, y, z = quaternion
+    size = w * w + x * x + y * y + z * z
+    rows = [
+        [w * w + x * x - y * y - z * z, 2 * (x * y + w * z), 2 * (x * z - w * y)],
+        [2 * (x * y - w * z), w * w - x * x + y * y - z * z, 2 * (y * z + w * x)],
+        [2 * (x * z + w * y), 2 * (y * z - w * x), w * w - x * x - y * y + z * z],
+    ]
+    return [row / size for row in matvec(rows, vector)]
+
+
+def _coordinate_rates(joint: _Joint) -> list[Any]:
+    if joint.joint.kind == "ball":
+        return quaternion_rate(joint.position, joint.rate)
+    return joint.rate
+
+
+def quaternion_rate(quaternion: list[Any], omega: list[Any]) -> list[Any]:
+    """½ q ω: the rate of a quaternion whose body turns at ω, in its own axes."""
+    w, x, y, z = quaternion
+    a, b, c = omega
+    return [
+        -0.5 * (x * a + y * b + z * c),
+        0.5 * (w * a + y * c - z * b),
+        0.5 * (w * b + z * a - x * c),
+        0.5 * (w * c + x * b - y * a),
+    ]
