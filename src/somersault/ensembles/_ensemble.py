@@ -108,8 +108,8 @@ def ensemble(
     `vary` names the varied quantities (`Vary`). Grids span dimensions of their own; everything
     drawn runs along `sample`, `size` of them, from the `seed`, as a "random", "sobol", "halton"
     or "saltelli" `sequence`. `report` is a `Report`, or the names of its quantities. `accuracy` and
-    `until` are those of `fly`; a flight that takes more than `steps` steps of the integration has
-    failed, and is marked.
+    `until` are those of `fly`; a flight that takes `steps` steps of the integration and is not done
+    has failed, and is marked.
 
     Without `out` the result stays in memory. A path that ends in .nc gets it as NetCDF in the
     end; any other is a Zarr store, which fills chunk by chunk (`chunk` flights each), and which

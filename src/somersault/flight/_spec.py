@@ -13,6 +13,7 @@ from somersault.flight._numbers import number
 from somersault.flight._takeoff import JointTakeoff, Takeoff
 
 _MOST_BYTES = 10 * 2**20
+_MOST_SHOWN = 200  # characters of a mistaken value
 NUMBER, NUMBERS, TEXT, TEXTS, YES, TABLE = (
     "a number",
     "a list of numbers",
@@ -108,7 +109,8 @@ def check_keys(where: str, given: Mapping[str, Any], known: Mapping[str, str]) -
                 f"{where}{key} is no key of a SPEC; here it takes {', '.join(known)}"
             )
         if not _fits(value, known[key]):
-            raise SomersaultError(f"{where}{key} must be {known[key]}, and is {value!r}")
+            shown = repr(value)[:_MOST_SHOWN]
+            raise SomersaultError(f"{where}{key} must be {known[key]}, and is {shown}")
 
 
 def _fits(value: Any, kind: str) -> bool:

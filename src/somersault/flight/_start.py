@@ -59,6 +59,11 @@ class Start:
 def start(system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...]) -> Start:
     """One takeoff."""
     found = starts(system, takeoff, plans, numbers(takeoff, plans), 1)
+    for plan in plans:
+        if plan.hold and takeoff.spin is None and not np.any(momentum(system, found)):
+            raise SomersaultError(
+                f"joint {plan.joint.name}: hold balances a spin, and this takeoff has none"
+            )
     held = {
         plan.joint.name: float(np.asarray(found.values["pretension", plan.joint.name]).ravel()[0])
         for plan in plans
@@ -146,9 +151,6 @@ def _pretensioned(
     else:
         h = momentum(system, begun)
         rate = np.sqrt(h[:, 0] ** 2 + h[:, 1] ** 2 + h[:, 2] ** 2) / inertia
-    if not np.any(rate):
-        held = next(plan.joint.name for plan in plans if plan.hold)
-        raise SomersaultError(f"joint {held}: hold balances a spin, and this takeoff has none")
     more: dict[Name, Array] = {}
     for plan in plans:
         if plan.hold:

@@ -1,7 +1,9 @@
 """What is kept account of while a flight goes on: its turns, and how far it strays.
 
 Turns are counted as `attitude.unwrapped_angles` counts them, from one step of the integration
-to the next, each short enough that none is missed. Extremes are those of the cubic that has the
+to the next, each short enough that none is missed unless a path goes by the singularity (tilt
+±π/2) within some hundredths of a radian: that close one may be counted on the other side, which
+is the same attitude. Extremes are those of the cubic that has the
 values and the rates at both ends of a step; the steps resolve the fastest motion, so they
 are good to some thousandths of the swing.
 """

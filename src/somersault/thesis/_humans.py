@@ -10,7 +10,9 @@ import numpy as np
 from somersault import rigid
 from somersault import stability as st
 from somersault._array import Array
-from somersault.model import load
+from somersault.dynamics import Equations
+from somersault.model import Model, athlete, load, named_pose
+from somersault.model._pose import pose
 from somersault.thesis._claims import statement
 from somersault.thesis._entries import Result, Table
 
@@ -54,14 +56,20 @@ def _draw_2_5() -> Figure:
     return made
 
 
+@cache
+def _spin(name: str) -> st.Spin:
+    """The athlete's somersault in a posture."""
+    return st.spin(_athlete(), 2, named_pose(_athlete(), name))
+
+
 def fig_2_6() -> Result:
     """Their inertia ratios, and a path between them."""
     claims = []
     for name in POSTURES:
-        spin = st.spin(f"human_{name}", 2)
+        spin = _spin(name)
         ratios = spin.inertia_ratios
         quadrant = int(rigid.quadrant(ratios["k1"], ratios["k3"]))
-        stable = spin.linear().stable
+        stable = spin.linear(lock=["all"]).stable
         wanted, where = (False, 4) if name == "layout" else (True, 1)
         claims.append(
             statement(
@@ -73,12 +81,11 @@ def fig_2_6() -> Result:
                 f"{'stable' if stable else 'unstable'}, quadrant {quadrant}: k1 "
                 f"{ratios['k1']:.3f}, k3 {ratios['k3']:.3f}",
                 stable == wanted and quadrant == where,
-                "The mean man of de Leva (1996); the thesis's own measures are not printed.",
+                "An athlete made from de Leva (1996); the thesis's own measures are not printed.",
             )
         )
     tilted = max(
-        float(np.abs(st.spin(f"human_{name}", 2).principal_axes[:, 1] - [0, 1, 0]).max())
-        for name in POSTURES
+        float(np.abs(_spin(name).principal_axes[:, 1] - [0, 1, 0]).max()) for name in POSTURES
     )
     claims.append(
         statement(
@@ -95,8 +102,9 @@ def fig_2_6() -> Result:
     return Result(
         "Inertia ratios of a performer moving from tuck through pike to layout. Tuck and pike are "
         "stable as rigid bodies, layout is not.",
-        "So they are. Between the shipped postures each segment's turn against its parent is "
-        "interpolated (the thesis does not print its own sequence); on that path the body crosses "
+        "So they are, for an athlete of the mean man's size (1.741 m, 73 kg; de Leva 1996), knees "
+        "bent in the tuck. Between the postures the joint angles are interpolated (the thesis does "
+        "not print its own sequence); on that path the body crosses "
         f"from stable to unstable {100 * (leaves - 1):.0f} % of the way from pike to layout, where "
         "I2 falls below I1.",
         tuple(claims),
@@ -105,52 +113,28 @@ def fig_2_6() -> Result:
 
 
 @cache
+def _athlete() -> Model:
+    """The gymnast of the mean man's size, with knees: what the rigid postures are made of."""
+    return athlete(1.741, 73.0, knees=True)
+
+
+@cache
 def _path(count: int = 60) -> tuple[Array, Array]:
     """Share 0 (tuck), 1 (pike), 2 (layout), and k1, k3 (2, …) along it."""
-    from importlib.resources import as_file, files
-
-    import mujoco
-
-    turns = []
-    for name in POSTURES:
-        with as_file(files("somersault.model") / "shipped" / f"human_{name}.xml") as path:
-            compiled = mujoco.MjModel.from_xml_path(str(path))
-        turns.append(compiled.body_quat.copy())
-    data = mujoco.MjData(compiled)
     share = np.linspace(0, 2, 2 * count + 1)
+    postures = [named_pose(_athlete(), name) for name in POSTURES]
+    angles = {
+        joint: np.interp(share, [0, 1, 2], [at[joint] for at in postures]) for joint in postures[0]
+    }
     ratios = []
     axes = np.eye(3)
-    for s in share:
-        first = min(int(s), 1)
-        compiled.body_quat[:] = _between(turns[first], turns[first + 1], s - first)
-        mujoco.mj_kinematics(compiled, data)
-        whole = _inertia(compiled.body_mass, compiled.body_inertia, data.xipos, data.ximat)
+    for whole in Equations(_athlete()).inertia(pose(_athlete(), angles)):
         values, vectors = np.linalg.eigh(whole)
         # Followed from one posture to the next: near pike the axes lean by almost 45°.
         match = np.argmax(np.abs(vectors.T @ axes), 0)
         axes = vectors[:, match]
         ratios.append(rigid.inertia_ratios(*values[match]))
     return share, np.array(ratios).T
-
-
-def _between(one: Array, two: Array, share: float) -> Array:
-    """Turns part of the way between two, the short way (n, 4)."""
-    cosine = np.sum(one * two, -1, keepdims=True)
-    two = np.where(cosine < 0, -two, two)
-    angle = np.arccos(np.clip(np.abs(cosine), 0, 1))
-    near = angle < 1e-9
-    sine = np.where(near, 1.0, np.sin(angle))
-    weights = [np.where(near, w, np.sin(w * angle) / sine) for w in (1 - share, share)]
-    return weights[0] * one + weights[1] * two
-
-
-def _inertia(masses: Array, inertias: Array, centres: Array, axes: Array) -> Array:
-    """Of bodies with principal inertias (n, 3) about axes (n, 9), about their centre (3, 3)."""
-    turn = axes.reshape(-1, 3, 3)
-    r = centres - masses @ centres / masses.sum()
-    whole = np.einsum("bij,bj,bkj->ik", turn, inertias, turn)
-    spread = np.sum(masses * np.sum(r * r, 1)) * np.eye(3)
-    return whole + spread - np.einsum("b,bi,bj->ij", masses, r, r)
 
 
 def _draw_2_6(path: Array) -> Figure:
@@ -166,7 +150,7 @@ def _draw_2_6(path: Array) -> Figure:
     ax.plot(*path, color=look.VERMILION, lw=1.6)
     spots = {"tuck": (0.25, 0.2), "pike": (0.75, 0.75), "layout": (0.35, -0.75)}
     for name, place in spots.items():
-        k1, k3 = rigid.inertia_ratios(*st.principal_inertias(f"human_{name}"))
+        k1, k3 = rigid.inertia_ratios(*_spin(name).principal_inertias)
         ax.plot(k1, k3, "o", color=look.VERMILION, ms=7, zorder=6)
         look.pointer(ax, (float(k1), float(k3)), place, name, fontsize=11)
     look.label(ax, 0.04, 0.93, "stable", look.BLUE)

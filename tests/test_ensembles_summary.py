@@ -1,0 +1,209 @@
+"""Shares, quantiles, rankings and pictures of ensembles, against others' numbers."""
+
+from __future__ import annotations
+
+import json
+import warnings
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy.stats import binomtest
+
+import somersault as so
+from somersault.ensembles import ENDINGS, failed, fraction, quantiles, sensitivity, within
+from somersault.ensembles._summary import summary
+from somersault.ensembles._vary import draws
+
+LOST, NOT_YET = ENDINGS.index("not finite"), 255
+
+
+def dataset(values: np.ndarray, ended: np.ndarray, dims: tuple[str, ...]) -> xr.Dataset:
+    return xr.Dataset(
+        {
+            "tilt": (dims, values, {"units": "rad"}),
+            "landing_error": (dims, np.abs(values), {"units": "rad"}),
+            "ended": (dims, ended.astype("u1")),
+        }
+    )
+
+
+@pytest.mark.parametrize(("hits", "count"), [(0, 12), (12, 12), (5, 12), (1, 1), (0, 1), (99, 999)])
+@pytest.mark.parametrize("confidence", [0.95, 0.5])
+def test_shares_have_the_exact_binomial_interval(hits: int, count: int, confidence: float) -> None:
+    good = xr.DataArray(np.arange(count) < hits, dims="sample")
+    found = fraction(good, xr.zeros_like(good, "u1"), confidence=confidence)
+    wanted = binomtest(hits, count).proportion_ci(confidence, "exact")
+    assert float(found.fraction) == pytest.approx(hits / count)
+    assert float(found.low) == pytest.approx(wanted.low, abs=1e-12)
+    assert float(found.high) == pytest.approx(wanted.high, abs=1e-12)
+    assert int(found.flights) == count
+
+
+def test_shares_count_what_failed_and_leave_out_what_is_not_flown() -> None:
+    good = xr.DataArray([[True] * 6, [True] * 6], dims=("K", "sample"))
+    ended = xr.DataArray(
+        np.array([[0, 1, LOST, 4, 2, NOT_YET], [NOT_YET] * 6], "u1"), dims=("K", "sample")
+    )
+    np.testing.assert_array_equal(failed(ended)[0], [False, False, True, True, True, False])
+    found = fraction(good, ended)
+    np.testing.assert_array_equal(found.flights, [5, 0])
+    assert float(found.fraction[0]) == pytest.approx(2 / 5)
+    assert np.isnan(found.to_array()[:3, 1]).all()
+    whole = fraction(good, ended, over=["K", "sample"])
+    assert float(whole.fraction) == pytest.approx(2 / 5)
+    with pytest.raises(so.SomersaultError, match="confidence"):
+        fraction(good, ended, confidence=1.0)
+    with pytest.raises(so.SomersaultError, match="K, sample"):
+        fraction(good, ended, over="twist")
+
+
+def test_landings_within_a_tolerance() -> None:
+    data = dataset(np.array([0.1, -0.2, 0.3, np.nan]), np.array([0, 0, 0, LOST]), ("sample",))
+    np.testing.assert_array_equal(within(data, 0.2), [True, True, False, False])
+    assert float(so.Ensemble(data).fraction(tolerance=0.2).fraction) == 0.5
+    for bad in (None, 0.0, -1.0, np.nan):
+        with pytest.raises(so.SomersaultError, match="tolerance"):
+            within(data, bad)
+
+
+def test_quantiles_of_what_did_not_fail() -> None:
+    rng = np.random.default_rng(1)
+    values, ended = rng.normal(size=(3, 101)), np.zeros((3, 101))
+    ended[1, :7], ended[2, :] = LOST, LOST
+    values[ended == LOST] = np.nan
+    data = dataset(values, ended, ("K", "sample"))
+    with warnings.catch_warnings():  # numpy's, of a slice without numbers
+        warnings.simplefilter("ignore")
+        found = quantiles(data, "tilt", [0.0, 0.1, 0.5, 1.0])
+    for k in range(2):
+        flown = values[k][~np.isnan(values[k])]
+        np.testing.assert_allclose(found.tilt[:, k], np.quantile(flown, [0, 0.1, 0.5, 1]))
+        assert float(found["mean"][k]) == pytest.approx(flown.mean())
+        assert float(found.deviation[k]) == pytest.approx(flown.std(ddof=1))
+    assert np.isnan(found.tilt[:, 2]).all()
+    np.testing.assert_array_equal(found.flights, [101, 94, 0])
+    np.testing.assert_array_equal(found.failed, [0, 7, 101])
+    with pytest.raises(so.SomersaultError, match="twist"):
+        quantiles(data, "twist")
+    with pytest.raises(so.SomersaultError, match="0 to 1"):
+        quantiles(data, "tilt", [1.2])
+
+
+def test_the_whole_in_a_few_numbers() -> None:
+    values = np.concatenate([np.linspace(0, 1, 101), [np.nan] * 4])
+    data = dataset(values, np.array([0] * 100 + [1] + [LOST] * 4), ("sample",))
+    found = summary(data, 0.25)
+    assert found["flights"] == 105
+    assert found["ended"] == {"duration": 100, "event": 1, "not finite": 4}
+    assert found["reported"]["tilt"] == {
+        "5%": pytest.approx(0.05), "median": 0.5, "95%": pytest.approx(0.95), "unit": "rad",
+    }  # fmt: skip
+    assert found["within_tolerance"]["fraction"] == pytest.approx(26 / 105)
+
+
+# ------------------------------------------------------------------------- rankings
+
+NAMES = ("x1", "x2", "x3")
+A, B = 7.0, 0.1
+VARIANCE = A**2 / 8 + B * np.pi**4 / 5 + B**2 * np.pi**8 / 18 + 0.5
+FIRST = {"x1": 0.5 * (1 + B * np.pi**4 / 5) ** 2 / VARIANCE, "x2": A**2 / 8 / VARIANCE, "x3": 0.0}
+TOTAL = {"x2": FIRST["x2"], "x3": 8 * B**2 * np.pi**8 / 225 / VARIANCE}
+TOTAL["x1"] = FIRST["x1"] + TOTAL["x3"]
+
+
+def ishigami(sequence: str, size: int) -> xr.Dataset:
+    """A function whose indices are known (Ishigami and Homma 1990), over one grid of two."""
+    vary = {n: so.Vary(sets="takeoff.tilt", uniform=[-np.pi, np.pi]) for n in NAMES}
+    x = draws(vary, sequence, 3, np.arange(size))
+    y = np.sin(x["x1"]) + A * np.sin(x["x2"]) ** 2 + B * x["x3"] ** 4 * np.sin(x["x1"])
+    drawn = {n: {"uniform": [-np.pi, np.pi]} for n in NAMES}
+    specification = {
+        "vary": {"K": {"values": [1.0, 2.0]}, **drawn}, "sample": {"sequence": sequence},
+    }  # fmt: skip
+    return xr.Dataset(
+        {"y": (("K", "sample"), np.stack([y, 10 - 3 * y])), "n": ("K", np.zeros(2))},
+        {"K": [1.0, 2.0], **{n: ("sample", v) for n, v in x.items()}},
+        {"specification": json.dumps(specification)},
+    )
+
+
+def test_sobol_indices_of_a_known_function() -> None:
+    found = sensitivity(ishigami("saltelli", 5 * 4096), "y")
+    assert found.input.values.tolist() == ["x1", "x2", "x3"]
+    for k in range(2):
+        for name in NAMES:
+            one = found.sel(input=name).isel(K=k)
+            assert float(one.first_order) == pytest.approx(FIRST[name], abs=0.03)
+            assert float(one.total) == pytest.approx(TOTAL[name], abs=0.03)
+            assert abs(float(one.first_order) - FIRST[name]) < 2 * float(one.first_order_confidence)
+
+
+@pytest.mark.parametrize("sequence", ["random", "sobol", "halton"])
+def test_first_order_indices_from_any_draws(sequence: str) -> None:
+    found = sensitivity(ishigami(sequence, 4096), "y")
+    assert found.input.values.tolist() == ["x2", "x1", "x3"]
+    assert "total" not in found
+    for name in NAMES:
+        np.testing.assert_allclose(found.first_order.sel(input=name), FIRST[name], atol=0.06)
+
+
+def test_a_failed_flight_goes_with_its_group() -> None:
+    data = ishigami("saltelli", 5 * 1024)
+    lost = data.y.values.copy()
+    lost[0, [3, 77, 4000]] = np.nan
+    groups = np.ones(1024, bool)
+    groups[[0, 15, 800]] = False
+    kept = data.isel(sample=np.repeat(groups, 5))
+    found = sensitivity(data.assign(y=(data.y.dims, lost)), "y")
+    wanted = sensitivity(kept, "y")
+    for name in ("first_order", "total"):
+        np.testing.assert_array_equal(
+            found[name].isel(K=0).sortby("input"), wanted[name].isel(K=0).sortby("input")
+        )
+
+
+def test_what_cannot_be_ranked() -> None:
+    data = ishigami("random", 63)
+    with pytest.raises(so.SomersaultError, match=r"sample\.size"):
+        sensitivity(data, "y")
+    with pytest.raises(so.SomersaultError, match="no 'z'"):
+        sensitivity(data, "z")
+    with pytest.raises(so.SomersaultError, match="no single value"):
+        sensitivity(data, "n")
+    flat = ishigami("random", 100)
+    flat["y"] = flat.y * 0
+    assert np.isnan(sensitivity(flat, "y").first_order).all()
+
+
+# ------------------------------------------------------------------------- pictures
+
+
+def test_pictures_over_two_grids_one_and_none() -> None:
+    rng = np.random.default_rng(2)
+    made = {}
+    for dims in (("K", "arm", "sample"), ("K", "sample"), ("K", "arm"), ("K",), ("sample",)):
+        shape = tuple({"K": 5, "arm": 4, "sample": 30}[d] for d in dims)
+        data = dataset(rng.normal(size=shape), np.zeros(shape), dims)
+        data = data.assign_coords(K=np.linspace(0, 1, 5), arm=np.linspace(1, 2, 4))
+        made[dims] = so.Ensemble(data).plot("tilt")
+    for dims in made:
+        ax = made[dims].axes[0]
+        labels = (ax.get_xlabel(), ax.get_ylabel())
+        if dims[:2] == ("K", "arm"):
+            assert labels == ("K", "arm")
+            assert made[dims].axes[1].get_ylabel().startswith("tilt (rad)")
+            image = ax.collections[0].get_array()
+            assert image.shape == (4, 5)
+        elif dims[0] == "K":
+            assert labels == ("K", "tilt (rad)")
+            assert len(ax.lines[0].get_xdata()) == 5
+        else:
+            assert labels == ("tilt (rad)", "flights")
+            assert sum(p.get_height() for p in ax.patches) == 30
+    wide = dataset(np.zeros((2, 2, 2)), np.zeros((2, 2, 2)), ("a", "b", "c"))
+    with pytest.raises(so.SomersaultError, match="draw a part"):
+        so.Ensemble(wide).plot("tilt")
+    lost = dataset(np.full(3, np.nan), np.full(3, LOST), ("sample",))
+    with pytest.raises(so.SomersaultError, match="all failed"):
+        so.Ensemble(lost).plot()
