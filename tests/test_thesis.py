@@ -228,6 +228,8 @@ def test_every_entry_runs_and_explains_what_does_not_hold(tmp_path):
     assert len({claim.id for claim in claims}) == len(claims) > 150
     bad = {claim.id for claim in claims if not claim.holds}
     assert bad == {
+        "ch5-ceiling.best",
+        "ch5-ceiling.resonance",
         "eq2.nu",
         "fig4-15.body",
         "fig4-5.k1",
@@ -237,6 +239,7 @@ def test_every_entry_runs_and_explains_what_does_not_hold(tmp_path):
         "fig5-2.k1",
         "fig5-2.k1-bare",
         "fig5-5.high",
+        "fig5-7.variance-softest",
         "sec4-3.positive-0.6",
         "table4-3.k1",
         "table4-3.k3",

@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from importlib.metadata import version
 from itertools import pairwise
 from typing import Any
@@ -191,7 +191,7 @@ class Plan:
     @property
     def engines(self) -> dict[str, str]:
         """Versions of what computes: with others the last digits may be others."""
-        return {name: version(name) for name in _ENGINES}
+        return {name: _version(name) for name in _ENGINES}
 
 
 def _listed(vary: Vary) -> dict[str, Any]:
@@ -203,6 +203,9 @@ def _listed(vary: Vary) -> dict[str, Any]:
             digest = hashlib.sha256(numbers.tobytes()).hexdigest()
             found[key] = numbers.tolist() if numbers.size <= _MOST_LISTED else digest
     return found
+
+
+_version = cache(version)  # which reads the package's metadata each time
 
 
 def _plain(value: Any) -> Any:

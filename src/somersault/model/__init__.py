@@ -4,6 +4,7 @@ from somersault.model._athlete_measured import athlete_from_measurements
 from somersault.model._athlete_poses import named_pose
 from somersault.model._athlete_stature import athlete
 from somersault.model._load import load, shipped
+from somersault.model._mounted import Mount, mounted
 from somersault.model._types import GROUND, Body, Joint, Model
 
 __all__ = [
@@ -11,9 +12,11 @@ __all__ = [
     "Body",
     "Joint",
     "Model",
+    "Mount",
     "athlete",
     "athlete_from_measurements",
     "load",
+    "mounted",
     "named_pose",
     "shipped",
 ]

@@ -8,23 +8,36 @@ from somersault.thesis._damping import energy, fig_4_7
 from somersault.thesis._doll import table_5_1
 from somersault.thesis._doll_compared import fig_5_2, fig_5_3, fig_5_5
 from somersault.thesis._edges import sec_4_3
+from somersault.thesis._eigenfrequencies import table_6_1
 from somersault.thesis._entries import Entry
 from somersault.thesis._equations_2 import equations_2
+from somersault.thesis._friction import friction
 from somersault.thesis._gyric import fig_2_1, fig_2_2, fig_2_3, fig_2_4
+from somersault.thesis._hula import sec_6_2, sec_6_3_hula
 from somersault.thesis._humans import fig_2_5, fig_2_6
+from somersault.thesis._launch import sec_5_4
+from somersault.thesis._launches import fig_5_7, fig_5_8
 from somersault.thesis._layout_flights import fig_4_2, sec_4_3_3
 from somersault.thesis._locus import fig_4_6, fig_4_8
 from somersault.thesis._matrices import appendix_a_3, equations
+from somersault.thesis._no_ceiling import ceiling
 from somersault.thesis._regions import fig_4_9, fig_4_10, fig_4_11
 from somersault.thesis._reorientation import fig_4_14, fig_4_15
 from somersault.thesis._ridge import fig_4_12
 from somersault.thesis._rigid import fig_4_5, table_4_1
+from somersault.thesis._rudi_flights import fig_6_1, fig_6_4, fig_6_5
+from somersault.thesis._rudi_maps import fig_6_2, fig_6_3, momentum, poses
 from somersault.thesis._rule import fig_4_17
+from somersault.thesis._scatter import estimate
 from somersault.thesis._simplest import fig_4_16, table_4_2, table_4_3
 from somersault.thesis._spheres import fig_2_7, fig_2_8, fig_3_3, fig_4_3
+from somersault.thesis._springs_tried import springs_tried
 from somersault.thesis._squares import fig_4_18, fig_4_19
+from somersault.thesis._techniques import fig_1_1
+from somersault.thesis._why_compliance import why
 
 ENTRIES = (
+    Entry("fig1-1", "Figure 1-1: three techniques in the air", "ch1", fig_1_1),
     Entry("fig2-1", "Figure 2-1: somersault, tilt and twist", "ch2", fig_2_1),
     Entry("eq2", "Equations 2.1–2.14: the rigid body", "ch2", equations_2),
     Entry("fig2-2", "Figure 2-2: the inertia ratio diagram", "ch2", fig_2_2),
@@ -65,4 +78,22 @@ ENTRIES = (
     Entry("fig5-2", "Figure 5-2: inertia ratios of doll and human", "ch5", fig_5_2),
     Entry("fig5-3", "Figure 5-3: how large the doll's arms are", "ch5", fig_5_3),
     Entry("fig5-5", "Figure 5-5: springs that stabilise the doll", "ch5", fig_5_5),
+    Entry("sec5-4", "Sections 5.2.2 and 5.4: the launcher and the flight", "ch5", sec_5_4),
+    Entry("fig5-7", "Figure 5-7: somersaults of twenty launches a spring", "ch5", fig_5_7),
+    Entry("fig5-8", "Figure 5-8: completely stable launches", "ch5", fig_5_8),
+    Entry("ch5-scatter", "How the launches scattered", "ch5", estimate, beyond=True),
+    Entry("ch5-springs", "Which five springs there were", "ch5", springs_tried, beyond=True),
+    Entry("ch5-ceiling", "The doll with no ceiling", "ch5", ceiling, beyond=True),
+    Entry("ch5-friction", "Friction in the doll's shoulders", "ch5", friction, beyond=True),
+    Entry("sec6-2", "Section 6.2: what tilts a twisting somersault", "ch6", sec_6_2),
+    Entry("sec6-3-hula", "Section 6.3: the hula movement", "ch6", sec_6_3_hula),
+    Entry("fig6-1", "Figure 6-1: the rudi", "ch6", fig_6_1),
+    Entry("fig6-2", "Figure 6-2: landings with prescribed joints", "ch6", fig_6_2),
+    Entry("fig6-3", "Figure 6-3: landings with compliant joints", "ch6", fig_6_3),
+    Entry("ch6-poses", "Which pose the gains are of", "ch6", poses, beyond=True),
+    Entry("sec6-3-h", "Section 6.3.3: other angular momenta", "ch6", momentum),
+    Entry("fig6-4", "Figure 6-4: an off-nominal start, prescribed", "ch6", fig_6_4),
+    Entry("fig6-5", "Figure 6-5: the same start, compliant", "ch6", fig_6_5),
+    Entry("table6-1", "Table 6.1: the rudi's eigenfrequencies", "ch6", table_6_1),
+    Entry("ch6-why", "Why compliance lands better", "ch6", why, beyond=True),
 )

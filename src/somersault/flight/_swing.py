@@ -1,0 +1,337 @@
+"""A body swung by what holds it, as round a bar, until it is let go and flies.
+
+The swing is of a model with a fixed base (`model._mounted`); letting go changes no position and
+no velocity, so `released` reads the takeoff of the free model off the last moment of the swing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import casadi as ca
+import numpy as np
+from numpy.typing import ArrayLike
+
+from somersault._array import Array
+from somersault._errors import SomersaultError
+from somersault.attitude import quaternion_from_matrix
+from somersault.dynamics import Equations
+from somersault.dynamics._composite import composites
+from somersault.dynamics._integrator import STATUS, Integrator
+from somersault.dynamics._motion import place
+from somersault.dynamics._vector import add, mul, vadd
+from somersault.flight._numbers import number, numbers
+from somersault.flight._takeoff import JointTakeoff, Takeoff
+from somersault.model import Body, Joint, Model
+from somersault.model._mounted import Mount
+from somersault.model._pose import pose, spread
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+GRAVITY = (0.0, 0.0, -9.81)  # m/s², inertial axes; 3 is up
+
+
+@dataclass(frozen=True)
+class Stop:
+    """A prop that pushes a joint back where it has passed `angle`, and never pulls.
+
+    It keeps the joint's coordinate at `angle` or above (`side` 1) or below (`side` −1). Passed by
+    c > 0 it gives `stiffness` c (1 + `damping` ċ), N m/rad and s/rad: a load that is continuous
+    when it touches and when it leaves (Hunt and Crossley 1975, J. Appl. Mech. 42, 440).
+    """
+
+    angle: float
+    side: int = 1
+    stiffness: float = 1e4
+    damping: float = 0.0
+
+    def torque(self, q: Any, u: Any) -> Any:
+        """What it gives at a coordinate and its rate, N m; symbols or arrays."""
+        passed = ca.fmax(self.side * (self.angle - q), 0)
+        return self.side * self.stiffness * passed * ca.fmax(1 - self.damping * self.side * u, 0)
+
+
+@dataclass(frozen=True, eq=False)
+class Swing:
+    """The motion of a model with a fixed base from rest or a push.
+
+    `times` (T,) s, `q` and `u` (T, joints), the last where it `ended` ("duration", "event").
+    """
+
+    model: Model
+    gravity: Array
+    stops: Mapping[str, Stop]
+    times: Array
+    q: Array
+    u: Array
+    ended: str
+
+    @cached_property
+    def equations(self) -> Equations:
+        """Of the model with its fixed base."""
+        return Equations(self.model)
+
+    @cached_property
+    def stop_torques(self) -> Array:
+        """What the stops give at each joint, (T, joints), N m."""
+        return np.array([_stop_torques(self.model, self.stops, *x) for x in self._states()])
+
+    @cached_property
+    def spring_torques(self) -> Array:
+        """What the joints' springs give, (T, joints), N m (N for a slide)."""
+        joints = self.model.joints
+        k, rest = (np.array([getattr(j, name) for j in joints]) for name in ("stiffness", "rest"))
+        return -k * (self.q - rest)
+
+    @cached_property
+    def stop_energy(self) -> Array:
+        """What the stops hold where they do not damp, (T,), J."""
+        total = np.zeros(len(self.times))
+        for name, stop in self.stops.items():
+            q = self.q[:, self.model.coordinate_slice(name).start]
+            passed = np.maximum(stop.side * (stop.angle - q), 0.0)
+            total += 0.5 * stop.stiffness * passed**2
+        return total
+
+    @cached_property
+    def height_energy(self) -> Array:
+        """Potential energy of gravity, (T,), J."""
+        return height_energy(self.equations, self.q, self.gravity)
+
+    @cached_property
+    def dataset(self) -> xr.Dataset:
+        """The history as a labelled dataset over `time` and `joint`."""
+        import xarray as xr
+
+        kinetic = self.equations.kinetic_energy(self.q, self.u)
+        spring = self.equations.spring_energy(self.q)
+        along, joule = ("time", "joint"), {"units": "J"}
+        return xr.Dataset(
+            {
+                "angle": (along, self.q, {"units": "rad or m"}),
+                "rate": (along, self.u, {"units": "rad/s or m/s"}),
+                "stop_torque": (along, self.stop_torques, {"units": "N m or N"}),
+                "spring_torque": (along, self.spring_torques, {"units": "N m or N"}),
+                "kinetic_energy": ("time", kinetic, joule),
+                "spring_energy": ("time", spring, joule),
+                "stop_energy": ("time", self.stop_energy, joule),
+                "height_energy": ("time", self.height_energy, joule),
+                "energy": (
+                    "time", kinetic + spring + self.stop_energy + self.height_energy, joule,
+                ),
+            },
+            {
+                "time": ("time", self.times, {"units": "s"}),
+                "joint": [joint.name for joint in self.model.joints],
+            },
+            {"model": self.model.name, "ended": self.ended},
+        )  # fmt: skip
+
+    def _states(self) -> list[tuple[list[float], list[float]]]:
+        return list(zip(self.q.tolist(), self.u.tolist(), strict=True))
+
+
+@dataclass(frozen=True)
+class Release:
+    """A body let go: `takeoff`, where its centre of mass is (m, ground's axes), and when (s)."""
+
+    takeoff: Takeoff
+    centre: Array
+    time: float
+
+
+def swing(
+    model: Model,
+    angles: Mapping[str, float],
+    duration: float,
+    *,
+    rates: Mapping[str, float] | None = None,
+    gravity: Sequence[float] = GRAVITY,
+    until: tuple[str, float] | None = None,
+    stops: Mapping[str, Stop] | None = None,
+    samples: int = 401,
+    accuracy: float = 1e-10,
+) -> Swing:
+    """Swing a model with a fixed base, for `duration` seconds or `until` a joint has an angle.
+
+    `angles` and `rates` are those of the start by joint; a joint that is not named is at its
+    reference, at rest. Springs and dampers are the model's. `gravity` is in m/s² along the
+    ground's axes. The event (joint, rad) is found to rounding. `accuracy` bounds each step's
+    error relative to 1 + the size of the state. Raises SomersaultError for a free base, a ball
+    joint, an unknown name, or anything that is no number.
+    """
+    _check(model, stops or {})
+    duration = number("duration", duration)
+    if duration <= 0 or samples < 2:
+        raise SomersaultError("a swing needs a duration above 0 s and at least 2 samples")
+    g = numbers("gravity", gravity, 3)
+    q0 = pose(model, angles)
+    u0 = np.zeros(len(model.speeds))
+    for name, rate in spread(model, rates or {}, mirrored=True).items():
+        u0[model.speed_slice(name)] = rate
+    props = dict(stops or {})
+    solver = Integrator(_slope(model, g, props), None if until is None else _gauge(model, until))
+    times = np.linspace(0.0, duration, samples)
+    start = np.concatenate([q0, u0])[None]
+    found = solver.solve(start, np.zeros((1, 0)), times, number("accuracy", accuracy))
+    before = times < found.end[0]
+    states = np.concatenate([found.states[0][before], found.final])
+    moments = np.append(times[before], found.end)
+    n = len(q0)
+    ended = STATUS[float(found.status[0])]
+    return Swing(model, g, props, moments, states[:, :n], states[:, n:], ended)
+
+
+def released(
+    found: Swing, mount: Mount, joints: Mapping[str, JointTakeoff] | None = None
+) -> Release:
+    """The takeoff of the body that a mount lets go at the end of a swing.
+
+    Attitude, angular velocity, velocity of the centre of mass, joint angles and rates are those
+    of the last moment. `joints` says what each joint does in flight (its angle and rate are
+    filled in); one that is not named keeps its spring and damper. Raises SomersaultError for a
+    swing of another model.
+    """
+    if found.model != mount.held:
+        raise SomersaultError(f"this is a swing of {found.model.name}, not of the mount given")
+    q, u = found.q[-1], found.u[-1]
+    moving = _base_motion(mount)(q, u)
+    turn, origin, omega, velocity = (np.array(x) for x in moving)
+    omega, velocity = omega[:, 0], turn.T @ velocity[:, 0]
+    ahead = len(mount.carrier.joints)
+    rider = mount.rider
+    own, own_rates = q[ahead:], u[ahead:]
+    free = Equations(rider)
+    still = np.concatenate([omega, velocity, own_rates])
+    linear = free.momentum(own, still)[3:] / rider.mass
+    centre = np.array(_moments(free)(own))[:, 0] / rider.mass + np.array(rider.bodies[0].com)
+    setups = dict(joints or {})
+    for name in setups:
+        rider.joint(name)
+    takeoffs = {
+        joint.name: _let_go(joint, setups.get(joint.name), own[k], own_rates[k])
+        for k, joint in enumerate(rider.joints)
+    }
+    takeoff = Takeoff(
+        quaternion=quaternion_from_matrix(turn).tolist(),
+        angular_velocity=omega.tolist(),
+        velocity=(turn @ linear).tolist(),
+        joints=takeoffs,
+    )
+    place = origin[:, 0] + turn @ centre
+    return Release(takeoff, place, float(found.times[-1]))
+
+
+def _let_go(joint: Joint, given: JointTakeoff | None, angle: float, rate: float) -> JointTakeoff:
+    if given is None:
+        if joint.stiffness == 0:
+            return JointTakeoff("free", float(angle), float(rate), damping=joint.damping)
+        given = JointTakeoff(
+            "sprung", stiffness=joint.stiffness, damping=joint.damping, rest=joint.rest
+        )
+    moves = given.motion not in ("locked", "prescribed")
+    return replace(given, angle=float(angle), rate=float(rate) if moves else 0.0)
+
+
+def height_energy(equations: Equations, q: ArrayLike, gravity: ArrayLike = GRAVITY) -> Array:
+    """Potential energy (…) in J of a model with a fixed base at joint coordinates (…, n).
+
+    Zero with its centre of mass at the height of the ground's origin.
+    """
+    q = np.asarray(q, float)
+    moments = np.array(_moments(equations)(q.reshape(-1, q.shape[-1]).T)).T
+    return (-moments @ np.asarray(gravity, float)).reshape(q.shape[:-1])
+
+
+def _check(model: Model, stops: Mapping[str, Stop]) -> None:
+    if model.free:
+        raise SomersaultError(
+            f"{model.name} is free in the air; a swing needs something that holds it (mounted)"
+        )
+    ball = next((joint.name for joint in model.joints if joint.kind == "ball"), None)
+    if ball is not None:
+        raise SomersaultError(f"joint {ball} is a ball; a swing takes hinges and slides only")
+    for name in stops:
+        model.joint(name)
+
+
+# ------------------------------------------------------------------------------- symbols
+
+
+def _slope(model: Model, gravity: Array, stops: Mapping[str, Stop]) -> ca.Function:
+    forward = Equations(model).expression("forward_dynamics").function()
+    n = len(model.joints)
+    x = ca.SX.sym("x", 2 * n + 1)
+    q, u = x[:n], x[n : 2 * n]
+    torques = ca.vertcat(
+        *_stop_torques(model, stops, [q[k] for k in range(n)], [u[k] for k in range(n)])
+    )
+    accelerations = forward(q, u, torques, ca.DM(gravity), ca.SX(0, 1))
+    return ca.Function("slope", [x], [ca.cse(ca.densify(ca.vertcat(u, accelerations)))])
+
+
+def _gauge(model: Model, until: tuple[str, float]) -> ca.Function:
+    joint, angle = until
+    x = ca.SX.sym("x", 2 * len(model.joints) + 1)
+    at = model.coordinate_slice(joint).start
+    return ca.Function("gauge", [x], [x[at] - number("until", angle)])
+
+
+def _stop_torques(
+    model: Model, stops: Mapping[str, Stop], q: Sequence[Any], u: Sequence[Any]
+) -> list[Any]:
+    return [
+        stops[joint.name].torque(q[k], u[k]) if joint.name in stops else 0.0
+        for k, joint in enumerate(model.joints)
+    ]
+
+
+def _moments(equations: Equations) -> ca.Function:
+    """Mass times centre of mass, of joint coordinates: from the ground's origin, or from a free
+    base's own centre of mass; in its axes."""
+    tree = equations.tree
+    q = ca.SX.sym("q", len(equations.model.coordinates))
+    placed = place(tree, [q[k] for k in range(q.numel())])
+    wholes = composites(tree, placed)
+    if tree.free:
+        return ca.Function("moments", [q], [ca.vertcat(*wholes[0].first)])
+    total: list[Any] = [0.0] * 3
+    for at, whole in zip(placed, wholes, strict=True):
+        if at.link.parent < 0:
+            turned = at.turn.out(whole.first)
+            total = vadd(total, [add(turned[k], mul(whole.mass, at.position[k])) for k in range(3)])
+    return ca.Function("moments", [q], [ca.densify(ca.vertcat(*total))])
+
+
+def _base_motion(mount: Mount) -> ca.Function:
+    """Of (q, u): the rider's base turned in the ground's axes, its origin, its angular velocity in
+    its own axes, and its origin's velocity in the ground's."""
+    n = len(mount.held.joints)
+    q, u = ca.SX.sym("q", n), ca.SX.sym("u", n)
+    turn, origin = _frame(mount.carrier, q)
+    position, rotation = ca.DM(np.array(mount.position)), ca.DM(np.array(mount.rotation))
+    origin, turn = origin + turn @ position, turn @ rotation
+    change = ca.reshape(ca.jtimes(ca.vec(turn), q, u), 3, 3)
+    spin = turn.T @ change
+    omega = ca.vertcat(spin[2, 1], spin[0, 2], spin[1, 0])
+    return ca.Function("base", [q, u], [turn, origin, omega, ca.jtimes(origin, q, u)])
+
+
+def _frame(body: Body, q: Any) -> tuple[Any, Any]:
+    """Axes (columns) and origin of a body that stands on the ground; its joints come first in q."""
+    turn, origin = ca.SX(ca.DM(np.array(body.rotation))), ca.SX(ca.DM(np.array(body.position)))
+    for k, joint in enumerate(body.joints):
+        move, axis = q[k] - joint.reference, ca.DM(np.array(joint.axis))
+        if joint.kind == "slide":
+            origin += turn @ (axis * move)
+            continue
+        skew = ca.skew(axis)
+        own = ca.DM.eye(3) + ca.sin(move) * skew + (1 - ca.cos(move)) * (skew @ skew)
+        anchor = ca.DM(np.array(joint.anchor))
+        origin += turn @ (anchor - own @ anchor)
+        turn = turn @ own
+    return turn, origin

@@ -1,0 +1,59 @@
+"""A body in the air held by something that moves about a fixed place, until it lets go."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from somersault._errors import SomersaultError
+from somersault.model._types import GROUND, IDENTITY, ZERO, Body, Matrix, Model, Vector
+from somersault.model._weld import as_matrix, as_vector, merge_welded
+
+
+@dataclass(frozen=True)
+class Mount:
+    """A free model (`rider`) whose base is fixed to a carrier.
+
+    `held` is the two as one model with a fixed base: the carrier's joints, then the rider's, all
+    with their own names. The rider's base frame stands at `position` (m), turned by `rotation`
+    (columns: its axes), in the axes of the carrier, which is body 0 of `held`.
+    """
+
+    rider: Model
+    held: Model
+    position: Vector
+    rotation: Matrix
+
+    @property
+    def carrier(self) -> Body:
+        """The carrier with the rider's base in it."""
+        return self.held.bodies[0]
+
+
+def mounted(
+    model: Model, carrier: Body, position: Vector = ZERO, rotation: Matrix = IDENTITY
+) -> Mount:
+    """Fix a free model's base to a carrier that stands on the ground with joints of its own.
+
+    The carrier's mass may be zero. Raises SomersaultError for a model whose base is not free,
+    and for a carrier with a parent or without joints.
+    """
+    if not model.free:
+        raise SomersaultError(
+            f"{model.name} has a fixed base already; mount a model that is free in the air"
+        )
+    if carrier.parent != GROUND or not carrier.joints:
+        raise SomersaultError(
+            f"the carrier {carrier.name!r} must stand on the ground, with a joint to move on"
+        )
+    base, *others = model.bodies
+    fixed = replace(
+        base,
+        parent=0,
+        position=as_vector(np.asarray(position, float)),
+        rotation=as_matrix(np.asarray(rotation, float)),
+    )
+    bodies = [carrier, fixed, *(replace(body, parent=body.parent + 1) for body in others)]
+    held = Model(f"{model.name}, held", False, merge_welded(bodies, free=False), model.ignored)
+    return Mount(model, held, fixed.position, fixed.rotation)
