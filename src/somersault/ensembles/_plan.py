@@ -32,7 +32,7 @@ from somersault.model import Model
 
 SAMPLE = "sample"
 _MOST = 10**11  # flights
-_MOST_LISTED = 10_000
+_MOST_LISTED = 1_000
 _TOGETHER = 8_192  # flights whose numbers stay near the processor
 _NAME = re.compile(r"\w[\w-]*")  # of an array in a store, and of a word in its attributes
 _ENGINES = ("somersault", "casadi", "llvmlite", "numpy", "scipy")
@@ -216,6 +216,8 @@ def _plain(value: Any) -> Any:
             for k, v in value.items()
             if v is not None and not (isinstance(v, tuple) and not v)
         }
+    if isinstance(value, np.ndarray) and value.size > _MOST_LISTED:  # a recorded path
+        return hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
     if isinstance(value, list | tuple):

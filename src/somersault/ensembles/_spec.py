@@ -12,16 +12,8 @@ from somersault.ensembles._ensemble import STEPS, plan
 from somersault.ensembles._plan import Plan
 from somersault.ensembles._report import Report
 from somersault.ensembles._vary import DISTRIBUTIONS, Vary
-from somersault.flight._spec import (
-    NUMBER,
-    NUMBERS,
-    TEXT,
-    TEXTS,
-    WHOLE,
-    check_keys,
-    parse_spec,
-    read_toml,
-)
+from somersault.flight._spec import parse_spec, read_toml
+from somersault.flight._spec_keys import NUMBER, NUMBERS, TEXT, TEXTS, WHOLE, check_keys
 
 _TABLES = ("vary", "sample", "report", "target")
 _VARY = {

@@ -10,34 +10,34 @@ from typing import Any
 
 from somersault._errors import SomersaultError
 from somersault.flight._numbers import number
+from somersault.flight._spec_keys import (
+    EITHER,
+    NUMBER,
+    NUMBERS,
+    TABLE,
+    TEXT,
+    WHOLE,
+    YES,
+    check_keys,
+)
+from somersault.flight._spec_motion import moved, softened
 from somersault.flight._takeoff import JointTakeoff, Takeoff
 
 _MOST_BYTES = 10 * 2**20
-_MOST_SHOWN = 200  # characters of a mistaken value
-NUMBER, NUMBERS, TEXT, TEXTS, YES, TABLE = (
-    "a number",
-    "a list of numbers",
-    "a text",
-    "a list of texts",
-    "true or false",
-    "a table",
-)
-WHOLE = "a whole number"
-_EITHER = "a number, or three for a ball"
-
 _TOP = {
     "model": TEXT, "duration": NUMBER, "gravity": NUMBERS, "accuracy": NUMBER,
-    "samples": WHOLE, "until": TEXT, "takeoff": TABLE, "joints": TABLE,
+    "samples": WHOLE, "until": TEXT, "takeoff": TABLE, "joints": TABLE, "motion": TABLE,
+    "compliance": TABLE,
 }  # fmt: skip
 _TAKEOFF = {
     "somersault": NUMBER, "tilt": NUMBER, "twist": NUMBER, "quaternion": NUMBERS,
     "spin": NUMBER, "tilt_rate": NUMBER, "twist_rate": NUMBER, "angular_velocity": NUMBERS,
-    "angular_momentum": NUMBERS, "velocity": NUMBERS,
+    "angular_momentum": NUMBERS, "velocity": NUMBERS, "tape": NUMBERS,
 }  # fmt: skip
 _JOINT = {
-    "motion": TEXT, "angle": _EITHER, "rate": _EITHER, "stiffness": NUMBER,
+    "motion": TEXT, "angle": EITHER, "rate": EITHER, "stiffness": NUMBER,
     "damping": NUMBER, "rest": NUMBER, "pretension": NUMBER, "hold": YES,
-    "times": NUMBERS, "angles": NUMBERS,
+    "times": NUMBERS, "angles": NUMBERS, "following": YES,
 }  # fmt: skip
 
 
@@ -83,10 +83,18 @@ def parse_spec(given: Mapping[str, Any], beside: Path) -> FlightSpec:
             raise SomersaultError(f"joints.{name} must be a table; write [joints.{name}]")
         check_keys(f"joints.{name}.", joint, _JOINT)
     samples = given.get("samples")
+    model = _model(given["model"], beside)
+    duration = number("duration", given.get("duration", 1.0))
+    setups = {name: JointTakeoff(**joint) for name, joint in joints.items()}
+    if "motion" in given:
+        setups = {**moved(given["motion"], model, duration, beside), **setups}
+    begun = Takeoff(**takeoff, joints=setups)
+    if "compliance" in given:
+        begun = softened(given["compliance"], model, begun)
     return FlightSpec(
-        _model(given["model"], beside),
-        number("duration", given.get("duration", 1.0)),
-        Takeoff(**takeoff, joints={name: JointTakeoff(**joint) for name, joint in joints.items()}),
+        model,
+        duration,
+        begun,
         {
             "gravity": given.get("gravity", (0.0, 0.0, 0.0)),
             "accuracy": number("accuracy", given.get("accuracy", 1e-9)),
@@ -99,32 +107,3 @@ def parse_spec(given: Mapping[str, Any], beside: Path) -> FlightSpec:
 def _model(name: str, beside: Path) -> str:
     file = beside / name
     return str(file) if Path(name).suffix and file.is_file() else name
-
-
-def check_keys(where: str, given: Mapping[str, Any], known: Mapping[str, str]) -> None:
-    """SomersaultError unless every key is known and every value of its kind."""
-    for key, value in given.items():
-        if key not in known:
-            raise SomersaultError(
-                f"{where}{key} is no key of a SPEC; here it takes {', '.join(known)}"
-            )
-        if not _fits(value, known[key]):
-            shown = repr(value)[:_MOST_SHOWN]
-            raise SomersaultError(f"{where}{key} must be {known[key]}, and is {shown}")
-
-
-def _fits(value: Any, kind: str) -> bool:
-    if kind == TEXT:
-        return isinstance(value, str)
-    if kind == YES:
-        return isinstance(value, bool)
-    if kind == TABLE:
-        return isinstance(value, Mapping)
-    if kind == _EITHER:
-        return _fits(value, NUMBER) or _fits(value, NUMBERS)
-    if kind in (NUMBERS, TEXTS):
-        one = NUMBER if kind == NUMBERS else TEXT
-        return isinstance(value, list) and all(_fits(item, one) for item in value)
-    if not isinstance(value, int | float) or isinstance(value, bool):
-        return False
-    return kind == NUMBER or float(value).is_integer()

@@ -143,9 +143,9 @@ def poses() -> Result:
         f"Prescribed, {100 * stiff:.0f} % of the starts land below 0.1. With gains from mid-twist "
         f"up to {100 * top['wrap']:.0f} %; from the initial pike up to {100 * top['pike']:.0f} %; "
         f"following the pose {100 * top['following']:.0f} %. The inertia about the upper arm's "
-        "long axis is some ten times smaller with the elbow straight, as at takeoff, than bent: gains "
-        "taken there leave the bent arm without hold, and flights end in the shoulder's gimbal "
-        f"lock. In brackets: flights of {_FEWER**2} that took more than the steps allowed; they "
+        "long axis is some ten times smaller with the elbow straight, as at takeoff, than bent: "
+        "gains taken there leave the bent arm without hold, and flights end in the shoulder's "
+        f"gimbal lock. In brackets: flights of {_FEWER**2} that took more than the steps allowed; they "
         "count as not small and are never averaged. Without the motor tape "
         f"{100 * untaped:.0f} % land below 0.1.",
         (),
