@@ -32,9 +32,10 @@ from somersault.dynamics import Kernel
 from somersault.dynamics._integrator import Solution
 from somersault.dynamics._kernel import threads as threads_here
 from somersault.flight import Flight, JointTakeoff, Takeoff, fly
+from somersault.flight._course import Course
 from somersault.flight._start import Start, start
-from somersault.flight._system import System, kinds, system
-from somersault.flight._takeoff import plans
+from somersault.flight._system import System, system
+from somersault.flight._takeoff import kinds, plans
 from somersault.model import Model, load
 from somersault.stability import spin as steady_spin
 
@@ -63,11 +64,15 @@ class Case:
 
     @cached_property
     def states(self) -> np.ndarray:
-        return np.array([self.system.start(s.quaternion, s.omega, s.q, s.u) for s in self.starts])
+        many = [s.many for s in self.starts]
+        rows = [self.system.start(m.quaternion, m.omega, m.q, m.u, None) for m in many]
+        return np.concatenate(rows)
 
     @cached_property
     def parameters(self) -> np.ndarray:
-        return np.array([self.system.parameter_vector(s.plans) for s in self.starts])
+        begin = np.zeros((1, 1))
+        courses = [Course(self.system, s.plans, s.many, self.duration) for s in self.starts]
+        return np.concatenate([course.parameters(begin)[:, 0] for course in courses])
 
     @cached_property
     def reference(self) -> np.ndarray:

@@ -46,7 +46,9 @@ def compliant(
     prescribed.
     """
     model = load(model)
-    joints = plans(model, takeoff.joints)
+    joints = _joints(model, takeoff)
+    if not isinstance(tape, bool):
+        raise SomersaultError(f"tape must be true or false, and is {tape!r}")
     on_path = [plan for plan in joints if plan.motion == "prescribed"]
     if not on_path:
         raise SomersaultError("nothing is prescribed in this takeoff, so nothing can be compliant")
@@ -54,11 +56,17 @@ def compliant(
     zeta = number("damping_ratio", damping_ratio)
     if omega_n <= 0 or zeta < 0:
         raise SomersaultError(
-            f"natural_frequency {omega_n:g} and damping_ratio {zeta:g} must be positive"
+            f"natural_frequency must be positive and damping_ratio not negative, and they are "
+            f"{omega_n:g} and {zeta:g}"
         )
     begun = start(system(model, kinds(joints), None), takeoff, joints)
     inertias = np.ones(len(model.speeds))
-    if pose != "following":
+    following = isinstance(pose, str)
+    if following and pose != "following":
+        raise SomersaultError(
+            f"pose {pose!r} is none; give joint angles by name, a time in s, or 'following'"
+        )
+    if not following:
         inertias = Equations(model).outboard_inertia(_pose(model, joints, pose))
     given = dict(_by_name(joints))
     for plan in on_path:
@@ -66,7 +74,7 @@ def compliant(
         given[plan.joint.name] = JointTakeoff(
             "compliant", times=plan.times, angles=plan.angles, path=plan.given,
             stiffness=omega_n**2 * inertia, damping=2 * zeta * omega_n * inertia,
-            following=pose == "following",
+            following=following,
         )  # fmt: skip
     return replace(
         _with_momentum(takeoff, begun.momentum),
@@ -82,10 +90,16 @@ def with_momentum(model: str | Model, takeoff: Takeoff) -> Takeoff:
     flight would turn along.
     """
     model = load(model)
-    joints = plans(model, takeoff.joints)
+    joints = _joints(model, takeoff)
     return _with_momentum(
         takeoff, start(system(model, kinds(joints), None), takeoff, joints).momentum
     )
+
+
+def _joints(model: Model, takeoff: Takeoff) -> tuple[JointPlan, ...]:
+    if not isinstance(takeoff, Takeoff):
+        raise SomersaultError(f"a takeoff is a somersault.Takeoff, and not {takeoff!r}")
+    return plans(model, takeoff.joints)
 
 
 def _with_momentum(takeoff: Takeoff, momentum: Array) -> Takeoff:
@@ -116,6 +130,8 @@ def _pose(
 ) -> Array:
     """Joint coordinates (coordinates,) of a pose by name, or of the motion at a time."""
     if isinstance(pose, Mapping):
+        for name, angle in pose.items():
+            number(f"pose {name}", angle)
         return posed(model, pose)
     time = number("pose", pose)
     values: list[float] = []

@@ -47,10 +47,12 @@ class Course:
                 if plan.motion == "compliant":
                     names: list[Name] = [(g, plan.joint.name) for g in ("stiffness", "damping")]
                     parts.append(row(begun.values, names, len(begun.q)))
+                    parts.append(np.tile(plan.stops, (len(begun.q), 1)))
             elif plan.motion == "locked":
                 parts.append(begun.q[:, place : place + plan.joint.coordinates])
             else:
                 parts.append(_spring(plan, begun.values, len(begun.q)))
+                parts.append(np.tile(plan.stops, (len(begun.q), 1)))
             place += plan.joint.coordinates
         if self._system.symbols.bound:
             parts.append(momentum(self._system, begun))

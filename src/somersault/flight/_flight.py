@@ -136,7 +136,7 @@ class Flight:
 
     @cached_property
     def spring_energy(self) -> Array:
-        """Held by the joints' springs and pretensions, (time,), J."""
+        """Held by the springs and pretensions of sprung joints, (time,), J."""
         q, _ = self._joints
         total = np.zeros(len(q))
         for plan in self.start.plans:
@@ -156,7 +156,7 @@ class Flight:
     @property
     def conservative(self) -> bool:
         """Whether energy is kept: nothing damped, nothing driven."""
-        return not any(p.damping or p.on_path for p in self.start.plans)
+        return not any(p.damping or p.on_path or p.stops for p in self.start.plans)
 
     @property
     def energy_drift(self) -> float | None:

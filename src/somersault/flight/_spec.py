@@ -38,6 +38,7 @@ _JOINT = {
     "motion": TEXT, "angle": EITHER, "rate": EITHER, "stiffness": NUMBER,
     "damping": NUMBER, "rest": NUMBER, "pretension": NUMBER, "hold": YES,
     "times": NUMBERS, "angles": NUMBERS, "following": YES,
+    "stop_stiffness": NUMBER, "stop_damping": NUMBER,
 }  # fmt: skip
 
 

@@ -28,21 +28,23 @@ ATTITUDE, RATE = 4, 3  # of a state: quaternion and ω
 SPRING = ("stiffness", "rest", "damping", "pretension")  # parameters of a joint that moves
 PATH = 1 + DEGREE + 1  # parameters of a path: since when, and its polynomial
 GAINS = 2  # of a compliant joint: stiffness and damping
-_ON_PATHS = ("prescribed", "compliant", "following")
+STOPS = 4  # parameters of stops: where they are, stiffness and damping
+_ON_PATHS = ("prescribed", "compliant")
 
 
 def moves_freely(kind: Kind) -> bool:
     """Whether a joint is part of the state."""
-    return kind not in ("locked", "prescribed")
+    return kind.motion not in ("locked", "prescribed")
 
 
 def parameter_count(joint: Joint, kind: Kind) -> int:
     """How many parameters a joint has."""
-    if kind == "prescribed":
+    if kind.motion == "prescribed":
         return PATH
-    if kind in _ON_PATHS:
-        return PATH + GAINS
-    return joint.coordinates if kind == "locked" else len(SPRING)
+    if kind.motion == "locked":
+        return joint.coordinates
+    own = PATH + GAINS if kind.motion in _ON_PATHS else len(SPRING)
+    return own + (STOPS if kind.stopped else 0)
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,7 @@ class _Joint:
     wanted: tuple[Any, Any, Any] | None
     """Value, rate and acceleration of its path."""
     numbers: dict[str, Any]
+    stops: list[Any] | None = None
 
 
 class Symbols:
@@ -98,14 +101,14 @@ class Symbols:
             own = [self.p[p + k] for k in range(parameter_count(joint, kind))]
             p += len(own)
             wanted = None
-            if kind in _ON_PATHS:
+            if kind.motion in _ON_PATHS:
                 wanted = polynomial(self.t - own[0], own[1:PATH])
-            if kind == "prescribed":
+            if kind.motion == "prescribed":
                 assert wanted is not None
                 value, rate, acceleration = wanted
                 found.append(_Joint(joint, [value], [rate], [acceleration], wanted, {}))
                 continue
-            if kind == "locked":
+            if kind.motion == "locked":
                 still: list[Any] = [0.0] * joint.speeds
                 found.append(_Joint(joint, own, still, still, None, {}))
                 continue
@@ -113,11 +116,12 @@ class Symbols:
             moving = [self.y[u + k] for k in range(joint.speeds)]
             q, u = q + joint.coordinates, u + joint.speeds
             numbers: dict[str, Any] = dict(zip(SPRING, own, strict=False))
-            if kind == "free":
+            if kind.motion == "free":
                 numbers["stiffness"] = 0.0
             if wanted is not None:
-                numbers = dict(zip(("stiffness", "damping"), own[PATH:], strict=True))
-            found.append(_Joint(joint, at, moving, None, wanted, numbers))
+                numbers = dict(zip(("stiffness", "damping"), own[PATH:], strict=False))
+            stops = own[-STOPS:] if kind.stopped else None
+            found.append(_Joint(joint, at, moving, None, wanted, numbers, stops))
         return found
 
     @cached_property
@@ -167,12 +171,14 @@ class Symbols:
             for _ in joint.rate:
                 load = acting[place] + joint.numbers.get("pretension", 0.0)
                 if joint.wanted is not None and joint.acceleration is None:
-                    by = follows[place] if kind == "following" else 1.0
+                    by = follows[place] if kind.following else 1.0
                     value, rate, _ = joint.wanted
                     k, c = joint.numbers["stiffness"], joint.numbers["damping"]
                     load = by * (k * (value - joint.position[0]) + c * (rate - joint.rate[0]))
                     if taped is not None:
                         load = load + taped.torques[place]
+                if joint.stops is not None:
+                    load = load + _stopped(joint)
                 found.append(load)
                 place += 1
         return found
@@ -233,7 +239,7 @@ class Symbols:
     @cached_property
     def _outboard(self) -> list[Any]:
         """Inertia outboard of each joint speed in the paths' pose."""
-        if "following" not in self.kinds:
+        if not any(kind.following for kind in self.kinds):
             return []
         return outboard_inertia(self.tree, place(self.tree, self._paths[0]))
 
@@ -255,6 +261,17 @@ class Symbols:
 class _Tape:
     alpha: list[Any]
     torques: list[Any]
+
+
+def _stopped(joint: _Joint) -> Any:
+    """What the stops do: a spring and a damper beyond the limits, which only push."""
+    assert joint.stops is not None
+    low, high, k, c = joint.stops
+    q, u = joint.position[0], joint.rate[0]
+    below, above = ca.fmax(low - q, 0.0), ca.fmax(q - high, 0.0)
+    up = ca.fmax(k * below - c * u, 0.0) * (below > 0.0)
+    down = ca.fmax(k * above + c * u, 0.0) * (above > 0.0)
+    return up - down
 
 
 def _into_body(quaternion: list[Any], vector: list[Any]) -> list[Any]:

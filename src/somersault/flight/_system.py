@@ -57,7 +57,7 @@ class System:
             raise SomersaultError(
                 f"{model.name} has a fixed base, so it cannot fly; give its base a free joint"
             )
-        loose = [j.name for j, k in zip(model.joints, joints, strict=True) if k in _LOOSE]
+        loose = [j.name for j, k in zip(model.joints, joints, strict=True) if k.motion in _LOOSE]
         if tape and loose:
             raise SomersaultError(
                 f"joint {loose[0]} is on no path, so there is no motor tape to replay; make it "

@@ -16,7 +16,6 @@ from somersault.model._mirror import mirror_pairs
 
 LIMIT_SLACK = 1e-9  # rad beyond a joint's limits that count as within
 Motion = Literal["locked", "free", "sprung", "prescribed", "compliant"]
-Kind = Literal["locked", "free", "sprung", "prescribed", "compliant", "following"]
 _ON_PATHS = ("prescribed", "compliant")
 
 
@@ -32,8 +31,10 @@ class JointTakeoff:
     damping are those of an inertia of 1 kg m², and are multiplied by what is outboard of the joint
     in the path's own pose, as it changes. `pretension` (N m) is a constant torque beside the
     spring's and beside what `hold` gives. A ball's `angle` is a rotation vector and its `rate` an
-    angular velocity, both along its body's axes. What is None comes from the model: sprung where
-    it has stiffness or is given some, else locked at the pose in which the file draws it.
+    angular velocity, both along its body's axes. A joint that moves freely goes through its
+    limits unless it has a `stop_stiffness` (N m/rad) there, with a `stop_damping` (N m s/rad).
+    What is None comes from the model: sprung where it has stiffness or is given some, else locked
+    at the pose in which the file draws it.
     """
 
     motion: Motion | None = None
@@ -48,6 +49,8 @@ class JointTakeoff:
     angles: Sequence[float] = ()
     path: Path | None = None
     following: bool = False
+    stop_stiffness: float = 0.0
+    stop_damping: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -111,6 +114,16 @@ class Takeoff:
 
 
 @dataclass(frozen=True)
+class Kind:
+    """What the equations must know of a joint: its motion, whether its gains follow its path, and
+    whether it has stops."""
+
+    motion: Motion
+    following: bool = False
+    stopped: bool = False
+
+
+@dataclass(frozen=True)
 class JointPlan:
     """A joint's takeoff with everything the model leaves to it filled in."""
 
@@ -127,6 +140,8 @@ class JointPlan:
     angles: tuple[float, ...] = ()
     given: Path | None = None
     following: bool = False
+    stops: tuple[float, ...] = ()
+    """Lower and upper limit, stiffness and damping beyond them."""
 
     @property
     def on_path(self) -> bool:
@@ -136,7 +151,7 @@ class JointPlan:
     @property
     def kind(self) -> Kind:
         """What the equations must know of it."""
-        return "following" if self.following else self.motion
+        return Kind(self.motion, self.following, bool(self.stops))
 
 
 def kinds(plans: tuple[JointPlan, ...]) -> tuple[Kind, ...]:
@@ -190,11 +205,35 @@ def _mirrored(takeoff: JointTakeoff, left: Joint, right: Joint, sign: int) -> Jo
 
 
 def _plan(joint: Joint, given: JointTakeoff) -> JointPlan:
+    plan = _moving(joint, given)
+    stiffness, damping = (
+        number(f"joint {joint.name}: {name}", getattr(given, name))
+        for name in ("stop_stiffness", "stop_damping")
+    )
+    if not stiffness and not damping:
+        return plan
+    if stiffness <= 0 or damping < 0:
+        raise SomersaultError(
+            f"joint {joint.name} needs a positive stop_stiffness for its stops, and a stop_damping "
+            "that is not negative"
+        )
+    if plan.motion in ("locked", "prescribed") or joint.limits is None:
+        reason = "has no limits" if joint.limits is None else f"is {plan.motion}"
+        raise SomersaultError(f"joint {joint.name} {reason}, so stops would do nothing")
+    return replace(plan, stops=(*joint.limits, stiffness, damping))
+
+
+def _moving(joint: Joint, given: JointTakeoff) -> JointPlan:
     where = f"joint {joint.name}"
     for name in ("stiffness", "damping", "rest"):
         if getattr(given, name) is not None:
             number(f"{where}: {name}", getattr(given, name))
     motion = _motion(joint, given, where)
+    for name in ("hold", "following"):
+        if not isinstance(getattr(given, name), bool | np.bool_):
+            raise SomersaultError(f"{where}: {name} must be true or false")
+    if given.hold and (motion != "sprung" or given.rest is not None):
+        raise SomersaultError(f"{where}: hold is for a sprung joint without a rest of its own")
     pretension = number(f"{where}: pretension", given.pretension)
     if pretension and motion in ("locked", *_ON_PATHS):
         raise SomersaultError(f"{where} is {motion}, so its pretension would do nothing")
@@ -218,8 +257,6 @@ def _plan(joint: Joint, given: JointTakeoff) -> JointPlan:
         stiffness = joint.stiffness if given.stiffness is None else given.stiffness
     if motion != "locked":
         damping = joint.damping if given.damping is None else given.damping
-    if given.hold and (motion != "sprung" or given.rest is not None):
-        raise SomersaultError(f"{where}: hold is for a sprung joint without a rest of its own")
     rest = position[0] if given.hold else joint.rest if given.rest is None else given.rest
     return JointPlan(
         joint, motion, position, rate, stiffness, damping, rest, pretension, given.hold
@@ -253,8 +290,9 @@ def _motion(joint: Joint, given: JointTakeoff, where: str) -> Motion:
         raise SomersaultError(
             f"{where}: {given.motion!r} is no motion; use {', '.join(get_args(Motion))}"
         )
-    springs = given.stiffness and given.motion != "compliant"
-    if given.motion != "sprung" and (springs or given.rest is not None):
+    if given.motion == "compliant" and given.rest is not None:
+        raise SomersaultError(f"{where} is compliant about its path, so leave its rest out")
+    if given.motion not in ("sprung", "compliant") and (given.stiffness or given.rest is not None):
         raise SomersaultError(
             f"{where} is {given.motion}, so its spring would do nothing; leave it out"
         )
@@ -268,9 +306,16 @@ def _along_path(joint: Joint, motion: Motion, given: JointTakeoff, where: str) -
         raise SomersaultError(f"{where} is {motion}, so it has no stiffness that could follow")
     if motion == "compliant" and (given.stiffness is None or given.damping is None):
         raise SomersaultError(f"{where} is compliant; give its stiffness and damping")
+    if motion == "compliant" and (given.stiffness or 0.0) < 0:
+        raise SomersaultError(f"{where} is compliant; its stiffness must not be negative")
     knots: tuple[float, ...] = ()
     held: tuple[float, ...] = ()
     if given.path is not None:
+        if not isinstance(given.path, Path):
+            raise SomersaultError(
+                f"{where}: path is {type(given.path).__name__}, not one joint's path; of a Motion "
+                "take the joints that its prescribed() gives"
+            )
         if len(given.times) or len(given.angles):
             raise SomersaultError(f"{where} has both a path and times with angles; give one")
         whole = given.path  # of a `Motion`, which has seen to limits with a slack of its own

@@ -145,8 +145,8 @@ def poses() -> Result:
         f"following the pose {100 * top['following']:.0f} %. The inertia about the upper arm's "
         "long axis is some ten times smaller with the elbow straight, as at takeoff, than bent: "
         "gains taken there leave the bent arm without hold, and flights end in the shoulder's "
-        f"gimbal lock. In brackets: flights of {_FEWER**2} that took more than the steps allowed; they "
-        "count as not small and are never averaged. Without the motor tape "
+        f"gimbal lock. In brackets: flights of {_FEWER**2} that took more than the steps "
+        "allowed; they count as not small and are never averaged. Without the motor tape "
         f"{100 * untaped:.0f} % land below 0.1.",
         (),
         _draw_scan(shares, stiff),

@@ -96,9 +96,9 @@ def why() -> Result:
         "pulls soft arms outward, the inertia about the twist axis grows and the twist slows down, "
         "as a governor's balls would have it. Too stiff, it does nothing; too soft, it "
         "overcorrects and the sign turns round. Between lies a natural frequency at which the "
-        f"first-order effect is least, {least:g} rad/s, and the map's best is {best():g}. The motor "
-        "tape does the nominal work, so that springs answer nothing but deviations. The table shows each "
-        "group of joints compliant alone, and all the others without it.",
+        f"first-order effect is least, {least:g} rad/s, and the map's best is {best():g}. The "
+        "motor tape does the nominal work, so that springs answer nothing but deviations. The "
+        "table shows each group of joints compliant alone, and all the others without it.",
         claims,
         _draw(found),
         Table(
