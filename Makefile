@@ -29,6 +29,7 @@ bench: $(VENV)/.test
 	$(BIN)/python benchmarks/forward_dynamics.py
 	$(BIN)/python benchmarks/stability_chart.py
 	$(BIN)/python benchmarks/flights.py
+	$(BIN)/python benchmarks/ensembles.py
 
 docs: $(VENV)/.docs
 	$(BIN)/mkdocs build --strict --quiet

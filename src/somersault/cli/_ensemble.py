@@ -79,12 +79,15 @@ def run(chosen: argparse.Namespace) -> None:
         record["picture"] = str(chosen.plot)
     if chosen.out is not None:
         record["dataset"] = str(chosen.out)
-    if len(drawn) > 1 and 64 <= spec.plan.size <= _MOST_RANKED and "sample" in spec.plan.dims:
+    points = spec.plan.count // spec.plan.dims.get("sample", 1)
+    few = points * len(spec.plan.report.quantities) <= _MOST_RANKINGS
+    if len(drawn) > 1 and 64 <= spec.plan.size <= _MOST_RANKED and few:
         record["sensitivity"] = _ranking(found, spec.plan.report.quantities)
     print(json.dumps(record) if chosen.json else "\n".join(_page(record)))
 
 
-_MOST_RANKED = 100_000
+_MOST_RANKED = 100_000  # samples
+_MOST_RANKINGS = 24  # a ranking takes some hundredths of a second at every point of the grids
 
 
 def _ranking(found: Any, names: tuple[str, ...]) -> dict[str, dict[str, float]]:

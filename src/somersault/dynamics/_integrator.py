@@ -28,6 +28,7 @@ _TASKS_A_THREAD = 16  # at most: lanes differ in how long they take
 _STEPS_AT_A_TIME = 48
 _WORTH_CLOSING_UP = 0.7  # of the lanes: while more of them fly they stay where they are
 _NO_LIMIT = 2**62
+_MOST_TRIALS = 60  # of the search for an event
 
 
 @dataclass(frozen=True)
@@ -192,40 +193,58 @@ class Integrator:
         the full order of the method, so that nothing is interpolated.
         """
         count, n = len(outputs), self.state
-        x = packed(np.concatenate([outputs[:, :n], times[:, None], parameters, outputs[:, n:]], 1))
-        control = aligned((len(x), _l.CONTROL_ROWS, LANES))
-        control[...] = 0.0
-        control[:, _l.TIME] = x[:, n]
-        y = aligned((len(x), self._rows.outputs, LANES))
+        rows = np.concatenate([outputs[:, :n], times[:, None], parameters, outputs[:, n:]], 1)
+        whole = _Single(self, rows, n)
+        low, high = np.zeros(count), steps.copy()
+        g_low, g_high = whole.gauge_after(low), whole.gauge_after(high)
+        left, some = np.arange(count), whole
+        for _ in range(_MOST_TRIALS):
+            a, b, ga, gb = low[left], high[left], g_low[left], g_high[left]
+            with np.errstate(invalid="ignore", divide="ignore"):
+                middle = b - gb * (b - a) / (gb - ga)
+            middle = np.where(np.isfinite(middle), middle, (a + b) / 2)
+            g = some.gauge_after(middle)
+            same = g * gb > 0
+            g_low[left] = np.where(same, ga / 2, gb)
+            low[left] = np.where(same, a, b)
+            high[left], g_high[left] = middle, g
+            # A lane that has converged goes, so that it neither waits nor changes any more.
+            on = (np.abs(middle - low[left]) > 1e-15 * (1 + times[left])) & (g != 0)
+            if not on.any():
+                break
+            if not on.all():
+                left = left[on]
+                some = _Single(self, rows[left], n)
+        whole.gauge_after(high)
+        return whole.outputs, times + high
+
+
+class _Single:
+    """Whole single steps of any length from some states."""
+
+    def __init__(self, integrator: Integrator, rows: Array, state: int) -> None:
+        self._step, self._count = integrator._step, len(rows)
+        self._x = packed(rows)
+        self._control = aligned((len(self._x), _l.CONTROL_ROWS, LANES))
+        self._control[...] = 0.0
+        self._control[:, _l.TIME] = self._x[:, state]
+        self._y = aligned((len(self._x), integrator._rows.outputs, LANES))
+
+    def gauge_after(self, length: Array) -> Array:
+        """The gauge (N,) after steps so long (N,)."""
+        self._control[:, _l.STEP] = packed(length[:, None])[:, 0]
+        x, control, y = self._x, self._control, self._y
 
         def part(a: int, b: int) -> None:
             self._step(x[a:b].ctypes.data, control[a:b].ctypes.data, y[a:b].ctypes.data, b - a)
 
-        def after(length: Array) -> Array:
-            """The gauge after steps so long; the states are in y."""
-            control[:, _l.STEP] = packed(length[:, None])[:, 0]
-            _in_parts(part, len(x))
-            return control[:, _l.GAUGE].flatten()[:count]
+        _in_parts(part, len(x))
+        return control[:, _l.GAUGE].flatten()[: self._count]
 
-        low, high = np.zeros(count), steps.copy()
-        g_low, g_high = after(low), after(high)
-        middle, found = high.copy(), np.zeros(count, bool)
-        for _ in range(60):
-            with np.errstate(invalid="ignore", divide="ignore"):
-                trial = high - g_high * (high - low) / (g_high - g_low)
-            trial = np.where(np.isfinite(trial), trial, (low + high) / 2)
-            # A lane that has converged stays, so that it owes nothing to its neighbours.
-            middle = np.where(found, middle, trial)
-            g = after(middle)
-            same = g * g_high > 0
-            g_low = np.where(same, g_low / 2, g_high)
-            low = np.where(same, low, high)
-            high, g_high = middle, g
-            found = found | (np.abs(high - low) <= 1e-15 * (1 + times)) | (g == 0)
-            if found.all():
-                break
-        after(middle)
-        return unpacked(y, count), times + middle
+    @property
+    def outputs(self) -> Array:
+        """States and watched rows after the last steps, (N, …)."""
+        return unpacked(self._y, self._count)
 
 
 def _in_parts(part: Callable[[int, int], None], blocks: int) -> None:

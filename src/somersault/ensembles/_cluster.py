@@ -12,6 +12,7 @@ import logging
 from collections.abc import Iterator, Mapping
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
+from functools import lru_cache
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 _PATIENCE = 10.0  # s to find a scheduler
 _WAIT_FOR_WORKERS = 60.0
 _AHEAD = 2  # tasks a worker has before it
+_TRIM_BYTES = 2**27
 _DEATHS = 20  # of workers in one chunk, after which it is the chunk's fault
 
 
@@ -40,7 +42,12 @@ def on_cluster(
     import dask
     from distributed import Client, LocalCluster
 
-    quiet = {"distributed.scheduler.allowed-failures": _DEATHS, "distributed.comm.retry.count": 0}
+    quiet = {
+        "distributed.scheduler.allowed-failures": _DEATHS,
+        "distributed.comm.retry.count": 0,
+        # dask would have workers give memory back after every array, and ask for it again.
+        "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": _TRIM_BYTES,
+    }
     with dask.config.set(quiet), _unlogged():
         if scheduler is not None:
             with _client(scheduler) as client:
@@ -95,15 +102,15 @@ def _carry(
 
     try:
         client.wait_for_workers(1, timeout=_WAIT_FOR_WORKERS)
-        _check_engines(client, plan)
+        _check_engines(client, plan.engines)
         shared = client.scatter(plan, broadcast=False, hash=False)
         path = None if file is None else str(file.resolve())
-        for k in _flown(client, shared, cut, chunks, put, path, threads):
+        for k in _flown(client, shared, cut, chunks, put, path, threads, plan.engines):
             told(cut.size(k))
         if file is not None:  # a worker may have written into a copy of the store at its path
             done = _store.finished(file, cut)
             lost = [k for k in chunks if k not in done]
-            for _ in _flown(client, shared, cut, lost, put, None, threads):
+            for _ in _flown(client, shared, cut, lost, put, None, threads, plan.engines):
                 pass
     except KilledWorker:
         raise SomersaultError(
@@ -123,42 +130,48 @@ def _carry(
 
 def _flown(
     client: Client, shared: Any, cut: Layout, chunks: list[int], put: _run.Put,
-    path: str | None, threads: int | None,
+    path: str | None, threads: int | None, engines: dict[str, str],
 ) -> Iterator[int]:  # fmt: skip
     """Chunks as they are finished on the workers, no more of them ahead than keeps them busy."""
     from distributed import as_completed
 
     ahead = iter(chunks)
 
-    def begin(count: int) -> list[Any]:
+    def begin(busy: int) -> list[Any]:
+        """As many more as there are workers now: some may have joined, or gone."""
+        most = _AHEAD * len(client.scheduler_info(n_workers=-1)["workers"])
         return [
-            client.submit(_chunk, shared, cut, k, path, threads, pure=False)
-            for k in islice(ahead, count)
+            client.submit(_chunk, shared, cut, k, path, threads, engines, pure=False)
+            for k in islice(ahead, max(most - busy, 0 if busy else 1))
         ]
 
-    running = as_completed(begin(_AHEAD * len(client.scheduler_info(n_workers=-1)["workers"])))
+    running = as_completed(begin(0))
     for future in running:
         k, rows = future.result()
         if rows is not None:
             put(k, rows)
         future.release()
-        for more in begin(1):
+        for more in begin(running.count()):
             running.add(more)
         yield k
 
 
-def _check_engines(client: Client, plan: Plan) -> None:
+def _check_engines(client: Client, ours: dict[str, str]) -> None:
     """Refuse workers that would compute other last digits."""
-    ours = plan.engines
     for address, theirs in client.run(_engines, tuple(ours)).items():
-        for name, version in ours.items():
-            if theirs[name] != version:
-                raise SomersaultError(
-                    f"the worker {address} has {name} {theirs[name]}, and this program {version}; "
-                    "install the same on both"
-                )
+        _compare(f"the worker {address}", theirs, ours)
 
 
+def _compare(who: str, theirs: dict[str, str], ours: dict[str, str]) -> None:
+    for name, version in ours.items():
+        if theirs[name] != version:
+            raise SomersaultError(
+                f"{who} has {name} {theirs[name]}, and this program {version}; install the same "
+                "on both"
+            )
+
+
+@lru_cache(maxsize=1)
 def _engines(names: tuple[str, ...]) -> dict[str, str]:
     from importlib.metadata import PackageNotFoundError, version
 
@@ -172,9 +185,11 @@ def _engines(names: tuple[str, ...]) -> dict[str, str]:
 
 
 def _chunk(
-    plan: Plan, cut: Layout, k: int, path: str | None, threads: int | None
-) -> tuple[int, Mapping[str, Array] | None]:
+    plan: Plan, cut: Layout, k: int, path: str | None, threads: int | None,
+    engines: dict[str, str],
+) -> tuple[int, Mapping[str, Array] | None]:  # fmt: skip
     """Fly chunk k on a worker; its rows, unless it could write them itself."""
+    _compare("a worker that joined later", _engines(tuple(engines)), engines)
     rows = _run.flown(plan, cut, k, threads or cores())
     if path is None or not _is_here(path, plan):
         return k, rows

@@ -228,7 +228,7 @@ def _bytes_told(plan: Plan) -> int:
 
 
 def _chunk(plan: Plan) -> int:
-    """Flights in a chunk: seconds of work, some megabytes."""
+    """Flights in a chunk: about a second of work, some megabytes."""
     samples = plan.report.samples if plan.report.history else 0
     chosen = plan.system
     rows = 3 + 2 * len(plan.report.extremes) + chosen.state
