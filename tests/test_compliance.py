@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+import casadi as ca
 import numpy as np
 import pytest
 from test_flight_mujoco import apart
@@ -18,6 +19,11 @@ from trees import InMujoco, State, random_tree, to_mujoco, unit
 import somersault as so
 from somersault import JointTakeoff, SomersaultError, Takeoff
 from somersault.ensembles import ENDINGS
+from somersault.flight._columns import numbers
+from somersault.flight._course import Course
+from somersault.flight._start import starts
+from somersault.flight._system import system
+from somersault.flight._takeoff import kinds, plans
 from somersault.model import Model
 
 NAMES = [joint.name for joint in GYMNAST.joints]
@@ -345,3 +351,23 @@ def test_one_sentence_for_a_mistake(mistake: Callable[[], Any], word: str) -> No
         mistake()
     assert word in str(told.value)
     assert "\n" not in str(told.value)
+
+
+def test_the_tape_is_the_nominal_bodys() -> None:
+    """Varied masses meet the torques of the body as it is: a tape knows nothing of them."""
+    model = so.load(GYMNAST)
+    soft = so.compliant(GYMNAST, ELBOW, 20.0, pose=0.0)
+    joints = plans(model, soft.joints)
+    chosen = system(model, kinds(joints), None, ("mass.torso",), None, True)
+    symbols = chosen.symbols
+    acting = ca.Function("acting", [symbols.x], [ca.vertcat(*symbols.torques)])
+    values = {**numbers(soft, joints), ("mass.torso",): model.bodies[1].mass}
+    begun = starts(chosen, soft, joints, values, 1)
+    at = np.array([[0.05]])
+    state = chosen.start(begun.quaternion, begun.omega, begun.q, begun.u, soft.tape)
+    p = Course(chosen, joints, begun, 0.2).parameters(at)[:, 0]
+    light = np.array(acting(np.concatenate([state, at, p], 1)[0])).ravel()
+    p[0, 0] = 20.0  # kg
+    heavy = np.array(acting(np.concatenate([state, at, p], 1)[0])).ravel()
+    np.testing.assert_array_equal(light, heavy)
+    assert np.abs(light).max() > 0.01

@@ -517,3 +517,25 @@ def test_garbage_is_refused_in_one_sentence(
         read_motion(path, "gymnast", degrees=False, ignore_others=True)
     except so.SomersaultError as mistake:
         assert "\n" not in str(mistake)
+
+
+def test_a_recording_ends() -> None:
+    """Beyond its end a spline knows nothing; before its beginning neither."""
+    times = np.arange(0, 1.2, 0.01)
+    motion = so.sampled_motion("gymnast", times, {"elbow": 1 + 0.9 * np.sin(6 * times)})
+    joints = motion.prescribed("gymnast")
+    begun = so.Takeoff(angular_momentum=(0, 60, 0), joints=joints)
+    assert so.fly("gymnast", begun, 1.19).ended == "duration"
+    with pytest.raises(so.SomersaultError, match="recorded") as caught:
+        so.fly("gymnast", begun, 1.3)
+    assert "\n" not in str(caught.value)
+    later = so.Takeoff(
+        angular_momentum=(0, 60, 0), joints=motion.delayed(0.5).prescribed("gymnast")
+    )
+    for attempt in (
+        lambda: so.fly("gymnast", later, 1.0),
+        lambda: so.ensemble("gymnast", begun, 2.5),
+        lambda: so.fly("gymnast", so.compliant("gymnast", begun, 30.0, pose=0.0), 2.5),
+    ):
+        with pytest.raises(so.SomersaultError, match="recorded"):
+            attempt()

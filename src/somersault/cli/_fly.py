@@ -23,10 +23,11 @@ A SPEC:
   tilt = 0.01                   # rad
   spin = 8.64                   # rad/s of the nominal steady spin
   [joints.left_shoulder]
-  motion = "sprung"             # locked, free, sprung, prescribed
+  motion = "sprung"             # locked, free, sprung, prescribed, compliant
   angle = 1.4                   # rad
   stiffness = 34.48             # N m/rad
-  hold = true                   # pretensioned to balance the nominal spin"""
+  hold = true                   # pretensioned to balance the nominal spin
+or, for all joints, [motion] file = "dive.csv" and [compliance]: see docs/flight.md"""
 
 _BROKEN = {
     "too many steps": "it would take more than a million steps; it is too long for its accuracy, "

@@ -35,13 +35,16 @@ def compliant(
     *,
     pose: Mapping[str, float] | float | Literal["following"],
     tape: bool = True,
+    stop_stiffness: float = 0.0,
+    stop_damping: float = 0.0,
 ) -> Takeoff:
     """The takeoff of a body that is compliant about the motion that `takeoff` prescribes.
 
     Every prescribed joint gets k = ω_n² I and c = 2 ζ ω_n I (ω_n in rad/s), I its outboard
     inertia in a `pose`: angles by name, or the motion's own at a time in s, or "following" it as
     it changes. With `tape` the joint torques of the nominal flight act besides: of exactly this
-    takeoff, prescribed. The angular momentum is given in inertial axes, so that a change of
+    takeoff, prescribed. With a `stop_stiffness` (N m/rad) joints that have limits get stops there.
+    The angular momentum is given in inertial axes, so that a change of
     attitude does not merely turn the whole flight. Raises SomersaultError where nothing is
     prescribed.
     """
@@ -71,10 +74,12 @@ def compliant(
     given = dict(_by_name(joints))
     for plan in on_path:
         inertia = float(inertias[model.speed_slice(plan.joint.name).start])
+        stopped = plan.joint.limits is not None
         given[plan.joint.name] = JointTakeoff(
             "compliant", times=plan.times, angles=plan.angles, path=plan.given,
             stiffness=omega_n**2 * inertia, damping=2 * zeta * omega_n * inertia,
-            following=following,
+            following=following, stop_stiffness=stop_stiffness if stopped else 0.0,
+            stop_damping=stop_damping if stopped else 0.0,
         )  # fmt: skip
     return replace(
         _with_momentum(takeoff, begun.momentum),

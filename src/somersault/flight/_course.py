@@ -35,6 +35,8 @@ class Course:
         self._paths: dict[str, Path] = {
             plan.joint.name: path(plan, begun.values, count) for plan in plans if plan.on_path
         }
+        for name, whole in self._paths.items():
+            whole.check_known(name, duration)
         self._still = self._constants(begun)
         self.ends = self._knots()
 

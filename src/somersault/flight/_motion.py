@@ -185,7 +185,10 @@ class Motion:
         self.check(model)
         if duration is not None:
             self._covers(0.0, number("duration", duration))
-        return dict(self.paths)
+        if self.held:
+            return dict(self.paths)
+        known = (self.begin, self.end)
+        return {n: Path(p.knots, p.coefficients, known) for n, p in self.paths.items()}
 
     def prescribed(
         self, model: str | Model, duration: float | None = None

@@ -18,6 +18,7 @@ from somersault._errors import SomersaultError
 
 DEGREE = 5
 _SHORTEST = 1e-6  # s
+_EARLY = 1e-9  # s that count as none
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,16 +27,27 @@ class Path:
 
     `knots` (…, K), s; `coefficients` (…, K + 1, 6): before the first knot, between knots, after
     the last; rising powers of the time since the knot before (the first knot, for the first).
+    `known` is from when until when it may be followed, s: a recording ends.
     """
 
     knots: Array
     coefficients: Array
+    known: tuple[float, float] = (-np.inf, np.inf)
 
     def image(self, sign: float, offset: float) -> Path:
         """The path sign · this + offset."""
         coefficients = sign * self.coefficients
         coefficients[..., 0] += offset
-        return Path(self.knots, coefficients)
+        return Path(self.knots, coefficients, self.known)
+
+    def check_known(self, joint: str, duration: float) -> None:
+        """SomersaultError unless it may be followed from 0 for so long."""
+        first, last = self.known
+        if first > _EARLY or last < duration - _EARLY:
+            raise SomersaultError(
+                f"joint {joint}: its motion is recorded from {first:g} to {last:g} s and the "
+                f"flight lasts from 0 to {duration:g} s; fly within the recording"
+            )
 
     def at(self, times: Array) -> tuple[Array, Array]:
         """Origins (N, K) and coefficients (N, K, 6) that hold at times (N, K), and after them."""

@@ -20,7 +20,9 @@ _MOTION = {
     "mirrored": YES, "scaled": NUMBER, "delayed": NUMBER,
 }  # fmt: skip
 _READ = ("names", "ignore_others", "degrees", "cutoff", "rate", "start", "stop", "gap", "slack")
-_COMPLIANCE = {"natural_frequency": NUMBER, "damping_ratio": NUMBER, "pose": "", "tape": YES}
+_COMPLIANCE = {"natural_frequency": NUMBER, "damping_ratio": NUMBER, "pose": "", "tape": YES,
+    "stop_stiffness": NUMBER, "stop_damping": NUMBER,
+}  # fmt: skip
 
 
 def moved(
@@ -60,4 +62,6 @@ def softened(given: Mapping[str, Any], model: str, takeoff: Takeoff) -> Takeoff:
     return compliant(
         model, takeoff, given["natural_frequency"], given.get("damping_ratio", 0.7),
         pose=pose, tape=given.get("tape", True),  # type: ignore[arg-type]
+        stop_stiffness=given.get("stop_stiffness", 0.0),
+        stop_damping=given.get("stop_damping", 0.0),
     )  # fmt: skip

@@ -249,11 +249,12 @@ class Symbols:
         if not self.tape:
             return None
         q, u, a = self._paths
+        own = tree(self.model)  # the tape was recorded with the body as it is, not as it is varied
         omega = [self.y[self.moving + k] for k in range(RATE)]
         alpha, acceleration, _ = forward_dynamics(
-            self.tree, q, omega, u, [0.0] * len(u), [0.0] * 3, dict(enumerate(a))
+            own, q, omega, u, [0.0] * len(u), [0.0] * 3, dict(enumerate(a))
         )
-        _, _, torques = inverse_dynamics(self.tree, q, omega, u, alpha, acceleration, a)
+        _, _, torques = inverse_dynamics(own, q, omega, u, alpha, acceleration, a)
         return _Tape(alpha, torques)
 
 
