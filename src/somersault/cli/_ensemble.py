@@ -90,16 +90,18 @@ _MOST_RANKED = 100_000  # samples
 _MOST_RANKINGS = 24  # a ranking takes some hundredths of a second at every point of the grids
 
 
-def _ranking(found: Any, names: tuple[str, ...]) -> dict[str, dict[str, float]]:
-    """Sobol' indices of what is reported, averaged over the grids."""
+def _ranking(found: Any, names: tuple[str, ...]) -> dict[str, dict[str, float | None]]:
+    """Sobol' indices of what is reported, averaged over the grids; None where they are not
+    determined: too few flights that did not fail, or no variance."""
     result = {}
     for name in names:
         indices = found.sensitivity(name)
         which = "total" if "total" in indices else "first_order"
         values = indices[which]
         mean = values.mean([d for d in values.dims if d != "input"])
-        result[name] = {
-            str(i): float(v) for i, v in zip(mean["input"].values, mean.values, strict=True)
+        result[f"{name} ({which.replace('_', '-')})"] = {
+            str(i): float(v) if v == v else None
+            for i, v in zip(mean["input"].values, mean.values, strict=True)
         }
     return result
 
@@ -121,8 +123,8 @@ def _page(record: dict[str, Any]) -> list[str]:
             f"({100 * share['low']:.1f} to {100 * share['high']:.1f} % with 95 % confidence)"
         )
     for name, row in record.get("sensitivity", {}).items():
-        ranks = ", ".join(f"{who} {value:.2f}" for who, value in row.items())
-        lines.append(f"  variance of {name} from: {ranks}")
+        known = [f"{who} {value:.2f}" for who, value in row.items() if value is not None]
+        lines.append(f"  variance of {name} from: {', '.join(known) or 'not determined'}")
     for key in ("dataset", "picture"):
         if key in record:
             lines.append(f"  {key}: {record[key]}")

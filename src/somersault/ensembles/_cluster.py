@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import signal
+import threading
 from collections.abc import Iterator, Mapping
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
@@ -55,11 +57,26 @@ def on_cluster(
             return
         assert workers is not None
         each = threads or max(1, cores() // workers)
-        with LocalCluster(
-            n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None,
-            host="127.0.0.1", silence_logs="CRITICAL",
-        ) as cluster, Client(cluster) as client:  # fmt: skip
+        with _uninterrupted():  # an interrupt is for the program, which then stops them
+            cluster = LocalCluster(
+                n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None,
+                host="127.0.0.1", silence_logs="CRITICAL",
+            )  # fmt: skip
+        with cluster, Client(cluster) as client:
             _carry(client, plan, cut, chunks, put, told, file, each, "this machine")
+
+
+@contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Processes begun within ignore interrupts."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 @contextmanager
@@ -108,7 +125,7 @@ def _carry(
         for k in _flown(client, shared, cut, chunks, put, path, threads, plan.engines):
             told(cut.size(k))
         if file is not None:  # a worker may have written into a copy of the store at its path
-            done = _store.finished(file, cut)
+            done = _store.finished(file, plan, cut)
             lost = [k for k in chunks if k not in done]
             for _ in _flown(client, shared, cut, lost, put, None, threads, plan.engines):
                 pass

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -135,8 +135,13 @@ def plan(
     check_ending(accuracy, until)
     if takeoff is not None and not isinstance(takeoff, Takeoff):
         raise SomersaultError(f"a takeoff is a somersault.Takeoff, and not {takeoff!r}")
-    told = report if isinstance(report, Report) else Report(tuple(report))
-    varied = dict(vary or {})
+    if not isinstance(report, Report):
+        if isinstance(report, str) or not isinstance(report, Iterable):
+            raise SomersaultError(f"report must be a Report or a list of names, and is {report!r}")
+        report = Report(tuple(report))
+    if not isinstance(vary, Mapping | None) or not all(isinstance(n, str) for n in vary or {}):
+        raise SomersaultError("vary must give a Vary by name: {'takeoff_tilt': so.Vary(...)}")
+    told, varied = report, dict(vary or {})
     for what, value in (("sample.size", size), ("sample.seed", seed), ("steps", steps)):
         if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
             raise SomersaultError(f"{what} must be a whole number, and is {value!r}")
@@ -162,8 +167,11 @@ def carried_out(
 ) -> Ensemble:  # fmt: skip
     """Fly a plan, or what is left of it."""
     for what, value in (("chunk", chunk), ("threads", threads), ("workers", workers)):
-        if value is not None and (isinstance(value, bool) or not 1 <= value <= 10**9):
-            raise SomersaultError(f"{what} must be a whole number from 1, and is {value!r}")
+        whole = isinstance(value, int) and not isinstance(value, bool)
+        if value is not None and not (whole and 1 <= value <= _MOST_STEPS):
+            raise SomersaultError(f"{what} must be a whole number, 1 to 1e9, and is {value!r}")
+    if out is not None and not str(out):
+        raise SomersaultError("out is empty; give the path of a Zarr store or of a .nc file")
     if workers is not None and scheduler is not None:
         raise SomersaultError("workers and scheduler are both given; give one of them")
     cut = _store.layout(plan.dims, chunk or _chunk(plan))
@@ -178,7 +186,8 @@ def carried_out(
 
             check_scheduler(scheduler)
         _store.create(file, plan, cut)
-    done = _store.finished(file, cut)
+        cut = _store.resume(file, plan)  # which another program may have made meanwhile
+    done = _store.finished(file, plan, cut)
     left = [k for k in range(len(cut)) if k not in done]
 
     def put(k: int, rows: Mapping[str, Any]) -> None:

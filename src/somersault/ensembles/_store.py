@@ -1,8 +1,8 @@
 """Ensembles on disk: a Zarr store that fills chunk by chunk and can be left at any moment.
 
-Every chunk of every variable is a file that is written under another name and then renamed, and
-`ended` comes last: a chunk is finished when its file of `ended` is there. Nothing else is kept
-account of, so there is nothing that could disagree.
+Every chunk of every variable is a file that is written under another name and then renamed: a
+chunk is finished when all its files are there, and whole. Nothing else is kept account of, so
+there is nothing that could disagree, and what is lost is flown again.
 """
 
 from __future__ import annotations
@@ -116,7 +116,12 @@ def create(path: Path, plan: Plan, cut: Layout) -> None:
             warnings.simplefilter("ignore")
             zarr.consolidate_metadata(group.store)
         fresh.chmod(0o777 & ~_umask())
-        os.rename(fresh, path)
+        try:
+            os.rename(fresh, path)
+        except OSError:
+            if not path.is_dir():
+                raise
+            shutil.rmtree(fresh, ignore_errors=True)  # another program was quicker
     except BaseException:
         shutil.rmtree(fresh, ignore_errors=True)
         raise
@@ -228,17 +233,42 @@ def _difference(theirs: Any, ours: Any, key: str = "") -> str:
     return key
 
 
-def finished(path: Path, cut: Layout) -> set[int]:
-    """Numbers of the chunks that are complete."""
-    root = path / "ended" / "c"
+def finished(path: Path, plan: Plan, cut: Layout) -> set[int]:
+    """Numbers of the chunks that are complete: every variable's file there, and whole."""
+    found = set(range(len(cut)))
+    samples = len(plan.report.times(plan.duration))
+    for name, v in variables(plan.report, plan.system).items():
+        doubles = math.prod(cut.chunk) * (samples if v.over_time else 1)
+        places = _files(path / name / "c", 8 * doubles if v.dtype == "f8" else None)
+        depth = len(cut.grid)
+        found &= {int(np.ravel_multi_index(p[:depth], cut.grid)) for p in places}
+    along = [name for name, vary in plan.vary.items() if vary.grid is None]
+    if along:
+        at = list(cut.dims).index(SAMPLE)
+        there = [_files(path / name / "c", 8 * cut.chunk[at]) for name in along]
+        known = {p[0] for p in set.intersection(*there)}
+        found -= {k for k in found if _tells_samples(cut, k) and cut.place(k)[at] not in known}
+    return found
+
+
+def _files(root: Path, size: int | None) -> set[tuple[int, ...]]:
+    """Places of the chunk files below a folder that have a size (bytes; None: any but none)."""
     found = set()
     for folder, _, files in os.walk(root):
         ahead = Path(folder).relative_to(root).parts
         for file in files:
             place = (*ahead, file)
-            if len(place) == len(cut.grid) and all(p.isdecimal() for p in place):
-                found.add(int(np.ravel_multi_index([int(p) for p in place], cut.grid)))
+            if all(p.isdecimal() for p in place):
+                have = os.path.getsize(os.path.join(folder, file))
+                if have == size or (size is None and have):
+                    found.add(tuple(int(p) for p in place))
     return found
+
+
+def _tells_samples(cut: Layout, k: int) -> bool:
+    """Whether chunk k writes what is drawn: the first for its samples, by all other dimensions."""
+    pairs = zip(cut.dims, cut.place(k), strict=True)
+    return SAMPLE in cut.dims and not any(i for dim, i in pairs if dim != SAMPLE)
 
 
 def write(path: Path, plan: Plan, cut: Layout, k: int, rows: Mapping[str, Array]) -> None:
@@ -253,9 +283,7 @@ def _write(path: Path, plan: Plan, cut: Layout, k: int, rows: Mapping[str, Array
     arrays = _arrays(str(path), (path / "zarr.json").stat().st_mtime_ns)
     region = cut.region(k)
     dims = list(cut.dims)
-    if SAMPLE in dims and not any(
-        r.start for d, r in zip(dims, region, strict=True) if d != SAMPLE
-    ):
+    if _tells_samples(cut, k):
         along = region[dims.index(SAMPLE)]
         for name, values in plan.drawn(np.arange(along.start, along.stop)).items():
             arrays[name][along] = values
@@ -269,7 +297,10 @@ def _arrays(path: str, made: int) -> dict[str, Any]:
     """The arrays of the store that was `made` (ns) at a path, opened once for all chunks."""
     import zarr
 
-    return dict(zarr.open_group(path, mode="r+").arrays())
+    # A chunk that is all NaN, of flights that failed, is written too: a file that is not there
+    # is one that was lost.
+    arrays = zarr.open_group(path, mode="r+").arrays()
+    return {name: array.with_config({"write_empty_chunks": True}) for name, array in arrays}
 
 
 def tidy(path: Path) -> None:

@@ -49,6 +49,8 @@ def fraction(
 
     if not 0 < confidence < 1:
         raise SomersaultError(f"confidence must be between 0 and 1, and is {confidence}")
+    if getattr(getattr(good, "dtype", None), "kind", "") != "b":
+        raise SomersaultError("good must be true or false for each flight, like data.tilt < 0.1")
     dims = _over(ended, over)
     flown = ended != UNFLOWN
     n = flown.sum(dims)

@@ -82,7 +82,10 @@ def _of_joint(
         sides = [(left.name, 1.0, 0.0), (right.name, sign, offset)]
     found = []
     for name, factor, offset in sides:
-        model.joint(name)
+        try:
+            model.joint(name)
+        except SomersaultError as mistake:
+            raise SomersaultError(f"{where}: {mistake}") from None
         known: list[Name] = [(what, name, int(k))] if k else _every(values, what, name)
         if not known or any(n not in values for n in known):
             there = sorted(

@@ -91,7 +91,9 @@ class Vary:
     def targets(self) -> tuple[str, ...]:
         """Names of the numbers that it sets or is added to."""
         given = self.sets or self.adds_to
-        return (given,) if isinstance(given, str) else tuple(given)
+        if isinstance(given, str):
+            return (given,)
+        return tuple(given) if isinstance(given, Sequence) else ()
 
     @cached_property
     def grid(self) -> Array | None:
@@ -116,7 +118,8 @@ def check(name: str, vary: Vary) -> None:
     where = f"vary.{name}"
     if not isinstance(vary, Vary):
         raise SomersaultError(f"{where} must be a somersault.Vary, and is {vary!r}")
-    if bool(vary.sets) == bool(vary.adds_to) or not all(isinstance(t, str) for t in vary.targets):
+    named = vary.targets and all(isinstance(t, str) for t in vary.targets)
+    if bool(vary.sets) == bool(vary.adds_to) or not named:
         raise SomersaultError(
             f"{where} must have either sets or adds_to, with the names of numbers like "
             "'takeoff.tilt' or 'joints.shoulder.stiffness'"

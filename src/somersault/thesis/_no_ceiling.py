@@ -47,14 +47,21 @@ def flown(share: float) -> Outcome:
     )  # fmt: skip
 
 
-def margin(share: float) -> tuple[float, float, float]:
-    """The best K_sh and the ends of the range in which nine tenths as many launches last.
+def margin(share: float) -> tuple[float, list[tuple[float, float]]]:
+    """The best K_sh, and the ranges in which nine tenths as many launches last.
 
-    The best is the middle of those that are first, as several may be.
+    The best is the middle of those that are first, as several may be. The resonance may cut the
+    range in two.
     """
     stable = flown(share).share
-    good = STIFFNESSES[stable >= _KEEPS * stable.max()]
-    return float(np.median(STIFFNESSES[stable == stable.max()])), float(good[0]), float(good[-1])
+    good = np.flatnonzero(stable >= _KEEPS * stable.max())
+    runs = np.split(good, np.flatnonzero(np.diff(good) > 1) + 1)
+    ranges = [(float(STIFFNESSES[run[0]]), float(STIFFNESSES[run[-1]])) for run in runs]
+    return float(np.median(STIFFNESSES[stable == stable.max()])), ranges
+
+
+def _spoken(ranges: list[tuple[float, float]]) -> str:
+    return " and ".join(f"{a:.2f} to {b:.2f}" if b > a else f"{a:.2f}" for a, b in ranges)
 
 
 @cache
@@ -77,18 +84,18 @@ def ceiling() -> Result:
     at = int(np.argmin(np.abs(STIFFNESSES - BEST)))
     rows = []
     for share in SHARES:
-        found, (best, least, most) = flown(share), margin(share)
+        found, (best, ranges) = flown(share), margin(share)
         middle = np.median(found.somersaults[at])
         rows.append((
             f"{share:g}", f"{100 * found.share[at]:.0f} %", _count(middle), f"{best:.2f}",
-            f"{100 * found.share.max():.0f} %", f"{least:.2f} to {most:.2f}",
+            f"{100 * found.share.max():.0f} %", _spoken(ranges),
         ))  # fmt: skip
-    best, least, most = margin(0.5)
+    best, ranges = margin(0.5)
     return Result(
         "If we could have observed more somersaults, the doll may have exhibited a variance more "
         "in accordance with the remaining data (§5.5): the ceiling hid how long it lasts.",
         f"Thirty somersaults' time, at the laboratory's scatter and less. With half of it the best "
-        f"springs are about K_sh = {best:.2f}, and {least:.2f} to {most:.2f} do nine tenths as "
+        f"springs are about K_sh = {best:.2f}, and {_spoken(ranges)} do nine tenths as "
         f"well; the linear theory's range at Γ = {ARMS:g} is {low:.2f} to {high:.2f}. The "
         f"laboratory's 0.82 is low in both. Near {resonance():.2f} the symmetric and the "
         "antisymmetric oscillation are in resonance, 2 : 1.",
@@ -110,7 +117,7 @@ def _claims(at: int) -> list[Claim]:
     shares = [flown(share).share for share in SHARES]
     deviation = float(usual.deviation[at])
     inside = np.abs(STIFFNESSES - (low + high) / 2) < (high - low) / 2
-    best, least, most = margin(0.5)
+    best, ranges = margin(0.5)
     first = int(np.argmin(np.abs(STIFFNESSES - best)))
     half = flown(0.5).share
     middle = np.flatnonzero(_BETWEEN)
@@ -144,8 +151,8 @@ def _claims(at: int) -> list[Claim]:
             "ch5-ceiling.best", "§5.6", "the best spring for this doll is 0.82", "0.82",
             f"{best:.2f}: {100 * usual.share[first]:.0f} % of launches last for thirty "
             f"somersaults, with 0.82 {100 * usual.share[at]:.0f} %; at half the scatter "
-            f"{least:.2f} to {most:.2f} are nine tenths as good as the best",
-            least <= BEST <= most,
+            f"{_spoken(ranges)} are nine tenths as good as the best",
+            any(a <= BEST <= b for a, b in ranges),
             "0.82 was the best of the five springs, and under the ceiling nearly as good as any. "
             f"The best for this doll lies near {best:.2f}, in the upper half of the linear range "
             f"of {low:.2f} to {high:.2f}: by the parts it has, 0.82's linear spring on the middle "
