@@ -81,7 +81,6 @@ def starts(
 ) -> Starts:
     """Attitude, spin and pretension of `count` flights whose numbers are `values`."""
     quaternion, angles = _attitude(takeoff, values, count)
-    to_inertial = matrix_from_quaternion(quaternion)
     both = [position(plan, values, count) for plan in plans]
     q = np.concatenate([np.zeros((count, 0)), *(x for x, _ in both)], 1)
     u = np.concatenate([np.zeros((count, 0)), *(x for _, x in both)], 1)
@@ -91,7 +90,8 @@ def starts(
     elif ("angular_momentum", 1) in values:
         of_joints = system.equations.momentum(q, _speeds(np.zeros((count, 3)), u), bodies)[:, :3]
         h = row(values, [("angular_momentum", k) for k in (1, 2, 3)], count)
-        wanted = _turned(np.swapaxes(to_inertial, 1, 2), h) - of_joints
+        to_body = np.swapaxes(matrix_from_quaternion(quaternion), 1, 2)
+        wanted = _turned(to_body, h) - of_joints
         omega = np.linalg.solve(system.equations.inertia(q, bodies), wanted[..., None])[..., 0]
     else:
         rates = row(values, [("takeoff", n) for n in ("spin", "tilt_rate", "twist_rate")], count)
