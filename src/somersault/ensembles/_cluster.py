@@ -8,8 +8,10 @@ others; what the program had finished stays finished if it, or the scheduler, di
 from __future__ import annotations
 
 import asyncio
+import gc
 import logging
 import signal
+import socket
 import threading
 from collections.abc import Iterator, Mapping
 from concurrent.futures import CancelledError
@@ -29,6 +31,7 @@ from somersault.ensembles._store import Layout
 if TYPE_CHECKING:
     from distributed import Client
 
+_PORT = 8786  # a scheduler's, where none is given
 _PATIENCE = 10.0  # s to find a scheduler
 _WAIT_FOR_WORKERS = 60.0
 _AHEAD = 2  # tasks a worker has before it
@@ -103,12 +106,25 @@ def _client(address: str) -> Client:
     from distributed import Client
 
     try:
+        _listens(address)
+        # A client that came to nothing must not be swept up while another is being made: distributed
+        # holds one lock for both.
+        gc.collect()
         return Client(address, timeout=_PATIENCE)
     except (OSError, TimeoutError, ValueError) as trouble:
         raise SomersaultError(
             f"no scheduler answers at {address!r} ({type(trouble).__name__}); start one with "
             "'dask scheduler' and give its address, like tcp://127.0.0.1:8786"
         ) from None
+
+
+def _listens(address: str) -> None:
+    """OSError or ValueError unless something listens at a TCP address."""
+    from distributed.comm.addressing import parse_address, parse_host_port
+
+    scheme, place = parse_address(address)
+    if scheme in ("tcp", "tls"):
+        socket.create_connection(parse_host_port(place, _PORT), _PATIENCE).close()
 
 
 def _carry(
