@@ -107,8 +107,8 @@ def _client(address: str) -> Client:
 
     try:
         _listens(address)
-        # A client that came to nothing must not be swept up while another is being made: distributed
-        # holds one lock for both.
+        # A client that came to nothing must not be swept up while another is being made:
+        # distributed holds one lock for both.
         gc.collect()
         return Client(address, timeout=_PATIENCE)
     except (OSError, TimeoutError, ValueError) as trouble:
