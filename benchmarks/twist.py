@@ -11,7 +11,6 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import statistics
 import sys
 import time
 from collections.abc import Callable
@@ -22,6 +21,7 @@ from pathlib import Path
 import mujoco
 import mujoco.rollout
 import numpy as np
+from flights import measured
 
 import somersault as so
 from somersault.attitude import (
@@ -320,17 +320,6 @@ def ours_timer(case: Case, accuracy: float) -> Callable[[], float]:
         return time.perf_counter() - begun
 
     return measure
-
-
-def measured(timers: dict[str, Callable[[], float]], rounds: int) -> dict[str, dict[str, float]]:
-    """Least and median seconds of each timer, the timers taking turns."""
-    values: dict[str, list[float]] = {name: [] for name in timers}
-    for timer in timers.values():
-        timer()
-    for _ in range(rounds):
-        for name, timer in timers.items():
-            values[name].append(timer())
-    return {n: {"min": min(v), "median": statistics.median(v)} for n, v in values.items()}
 
 
 def benchmark(case: Case, accuracy: float, rounds: int) -> dict:

@@ -16,7 +16,7 @@ def write(path: Path, content: str | bytes) -> None:
         try:
             with os.fdopen(handle, "wb") as file:
                 file.write(data)
-            os.chmod(name, 0o666 & ~_umask())
+            os.chmod(name, 0o666 & ~umask())
             os.replace(name, path)
         except BaseException:
             os.unlink(name)
@@ -25,7 +25,8 @@ def write(path: Path, content: str | bytes) -> None:
         raise OSError(trouble.errno, trouble.strerror, str(path)) from None
 
 
-def _umask() -> int:
+def umask() -> int:
+    """The permissions that this process withholds from new files."""
     mask = os.umask(0)
     os.umask(mask)
     return mask

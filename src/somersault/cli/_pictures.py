@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,9 +22,6 @@ def check_picture(option: str, path: Path) -> None:
 def save_picture(path: Path, made: Figure) -> None:
     """Write a picture by its file's ending, the same bytes on every day."""
     from somersault._files import write
+    from somersault.view._style import saved
 
-    held = io.BytesIO()
-    ending = path.suffix.lower()[1:]
-    plain = {"Date": None, "Creator": None} if ending == "svg" else {"Software": None}
-    made.savefig(held, format=ending, dpi=160, metadata=plain)
-    write(path, held.getvalue())
+    write(path, saved(made, path.suffix.lower()[1:]))

@@ -25,7 +25,7 @@ from somersault._array import Array
 from somersault._errors import SomersaultError
 from somersault.dynamics._kernel import cores
 from somersault.ensembles import _run, _store
-from somersault.ensembles._plan import Plan
+from somersault.ensembles._plan import Plan, engines
 from somersault.ensembles._store import Layout
 
 if TYPE_CHECKING:
@@ -163,7 +163,7 @@ def _carry(
 
 def _flown(
     client: Client, shared: Any, cut: Layout, chunks: list[int], put: _run.Put,
-    path: str | None, threads: int | None, engines: dict[str, str],
+    path: str | None, threads: int | None, wanted: dict[str, str],
 ) -> Iterator[int]:  # fmt: skip
     """Chunks as they are finished on the workers, no more of them ahead than keeps them busy."""
     from distributed import as_completed
@@ -174,7 +174,7 @@ def _flown(
         """As many more as there are workers now: some may have joined, or gone."""
         most = _AHEAD * len(client.scheduler_info(n_workers=-1)["workers"])
         return [
-            client.submit(_chunk, shared, cut, k, path, threads, engines, pure=False)
+            client.submit(_chunk, shared, cut, k, path, threads, wanted, pure=False)
             for k in islice(ahead, max(most - busy, 0 if busy else 1))
         ]
 
@@ -191,7 +191,7 @@ def _flown(
 
 def _check_engines(client: Client, ours: dict[str, str]) -> None:
     """Refuse workers that would compute other last digits."""
-    for address, theirs in client.run(_engines, tuple(ours)).items():
+    for address, theirs in client.run(engines).items():
         _compare(f"the worker {address}", theirs, ours)
 
 
@@ -204,25 +204,12 @@ def _compare(who: str, theirs: dict[str, str], ours: dict[str, str]) -> None:
             )
 
 
-@lru_cache(maxsize=1)
-def _engines(names: tuple[str, ...]) -> dict[str, str]:
-    from importlib.metadata import PackageNotFoundError, version
-
-    found = {}
-    for name in names:
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            found[name] = "(none)"
-    return found
-
-
 def _chunk(
     plan: Plan, cut: Layout, k: int, path: str | None, threads: int | None,
-    engines: dict[str, str],
+    wanted: dict[str, str],
 ) -> tuple[int, Mapping[str, Array] | None]:  # fmt: skip
     """Fly chunk k on a worker; its rows, unless it could write them itself."""
-    _compare("a worker that joined later", _engines(tuple(engines)), engines)
+    _compare("a worker that joined later", engines(), wanted)
     rows = _run.flown(plan, cut, k, threads or cores())
     if path is None or not _is_here(path, plan):
         return k, rows
@@ -233,7 +220,16 @@ def _chunk(
 def _is_here(path: str, plan: Plan) -> bool:
     """Whether this worker sees the store."""
     try:
+        return _is_stored(path, (Path(path) / "zarr.json").stat().st_mtime_ns, plan)
+    except OSError:
+        return False
+
+
+@lru_cache(maxsize=4)
+def _is_stored(path: str, made: int, plan: Plan) -> bool:
+    """Whether the store that was `made` (ns) at a path is a plan's: read once for all chunks."""
+    try:
         _store.resume(Path(path), plan)
-    except (SomersaultError, OSError):
+    except SomersaultError:
         return False
     return True

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,9 +13,9 @@ from somersault.ensembles import _run, _store
 from somersault.ensembles._plan import Plan, check
 from somersault.ensembles._report import Report
 from somersault.ensembles._vary import Vary
-from somersault.flight._fly import Event, check_ending
-from somersault.flight._numbers import number
-from somersault.flight._takeoff import Takeoff
+from somersault.flight._fly import Event, check_ending, flight_time
+from somersault.flight._save import netcdf
+from somersault.flight._takeoff import Takeoff, require_takeoff
 from somersault.model import Model, load
 
 if TYPE_CHECKING:
@@ -130,11 +128,10 @@ def plan(
     report: Report | Sequence[str], accuracy: float, until: str | None, steps: int,
 ) -> Plan:  # fmt: skip
     """What `ensemble` would fly; SomersaultError for what does not fit."""
-    if number("duration", duration) <= 0:
-        raise SomersaultError(f"duration {duration:g} s is no flight; give a positive number")
+    duration = flight_time(duration)
     check_ending(accuracy, until)
-    if takeoff is not None and not isinstance(takeoff, Takeoff):
-        raise SomersaultError(f"a takeoff is a somersault.Takeoff, and not {takeoff!r}")
+    takeoff = Takeoff() if takeoff is None else takeoff
+    require_takeoff(takeoff)
     if not isinstance(report, Report):
         if isinstance(report, str) or not isinstance(report, Iterable):
             raise SomersaultError(f"report must be a Report or a list of names, and is {report!r}")
@@ -153,7 +150,7 @@ def plan(
         ]
         size = listed[0] if listed else 1
     made = Plan(
-        load(model), takeoff or Takeoff(), float(duration), varied, told, size, seed, sequence,
+        load(model), takeoff, duration, varied, told, size, seed, sequence,
         float(accuracy), until, steps,
     )  # fmt: skip
     check(made)
@@ -223,10 +220,7 @@ def _in_memory(
     data, put = _store.gathered(plan, cut)
     _fly(plan, cut, list(range(len(cut))), put, None, threads, workers, scheduler, shown)
     if file is not None:
-        with tempfile.TemporaryDirectory() as folder:
-            whole = os.path.join(folder, "ensemble.nc")
-            data.to_netcdf(whole, engine="h5netcdf")
-            write_file(file, Path(whole).read_bytes())
+        write_file(file, netcdf(data))
     return Ensemble(data)
 
 

@@ -9,7 +9,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from functools import cache, cached_property
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from itertools import pairwise
 from typing import Any
 
@@ -82,7 +82,7 @@ class Plan:
         """Numbers of the bodies that are varied."""
         return body_names(self.targets)
 
-    @property
+    @cached_property
     def system(self) -> System:
         """The equations, shared with every plan that has the same."""
         return system(
@@ -160,8 +160,7 @@ class Plan:
         course = Course(chosen, self.joints, begun, self.duration)
         tape = self.takeoff.tape
         state = chosen.start(begun.quaternion, begun.omega, begun.q, begun.u, tape)
-        zero = course.parameters(np.zeros((count, 1)))[:, 0]
-        watched = _report.first_watched(self.report, chosen, begun.angles, state, zero)
+        watched = _report.first_watched(self.report, chosen, begun.angles, state, course)
         times = self.report.times(self.duration)
         tolerance = self.accuracy * TOLERANCE_PER_ACCURACY
         found = solve(chosen, state, course, times, tolerance, watched, self.steps)
@@ -191,7 +190,7 @@ class Plan:
     @property
     def engines(self) -> dict[str, str]:
         """Versions of what computes: with others the last digits may be others."""
-        return {name: _version(name) for name in _ENGINES}
+        return engines()
 
 
 def _listed(vary: Vary) -> dict[str, Any]:
@@ -205,7 +204,16 @@ def _listed(vary: Vary) -> dict[str, Any]:
     return found
 
 
-_version = cache(version)  # which reads the package's metadata each time
+@cache
+def engines() -> dict[str, str]:
+    """The versions that this process has."""
+    found = {}
+    for name in _ENGINES:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = "(none)"
+    return found
 
 
 def _plain(value: Any) -> Any:

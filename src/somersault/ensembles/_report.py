@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from somersault._array import Array
 from somersault._errors import SomersaultError
 from somersault.dynamics import Kernel
 from somersault.dynamics._integrator import STATUS, Solution
+from somersault.flight._course import Course
 from somersault.flight._numbers import number
 from somersault.flight._system import System
 from somersault.flight._watch import ANGLES, RATES, VELOCITIES, values, watched
@@ -20,7 +22,7 @@ ERROR = "landing_error"
 ENDINGS = (*STATUS.values(), "no takeoff")
 UNFLOWN = 255
 _NO_TAKEOFF = ENDINGS.index("no takeoff")
-_FAILED = ENDINGS.index("too many steps")  # from here on
+FAILED = ENDINGS.index("too many steps")  # from here on
 _MOST_SAMPLES = 100_000
 
 
@@ -95,6 +97,11 @@ class Variable:
     over_time: bool = False
     words: str = ""
 
+    @property
+    def fill(self) -> float | int:
+        """What stands where nothing is flown yet."""
+        return {"f8": np.nan, "u1": UNFLOWN}.get(self.dtype, 0)
+
 
 def variables(report: Report, system: System) -> dict[str, Variable]:
     """All variables, in order; `ended` last: a chunk that has it is complete."""
@@ -124,19 +131,20 @@ def _units(system: System) -> dict[str, str]:
     return found
 
 
+@lru_cache(maxsize=64)
 def reader(names: tuple[str, ...], system: System) -> Kernel:
     """The quantities of (angles, state, time, parameters), compiled; once for a system."""
-    kept = system.__dict__.setdefault("_readers", {})
-    if names not in kept:
-        kept[names] = Kernel(values(names, system.quantities, system.state, system.parameters))
-    return kept[names]
+    return Kernel(values(names, system.quantities, system.state, system.parameters))
 
 
-def first_watched(report: Report, system: System, angles: Array, first: Array, p: Array) -> Array:
+def first_watched(
+    report: Report, system: System, angles: Array, first: Array, course: Course
+) -> Array:
     """Watched rows at takeoff (N, w): the angles, then each extreme as it is."""
     if not report.extremes:
         return angles
-    at = np.concatenate([angles, first, np.zeros((len(first), 1)), p], 1)
+    zero = np.zeros((len(first), 1))
+    at = np.concatenate([angles, first, zero, course.parameters(zero)[:, 0]], 1)
     begun = reader(report.extremes, system)(at)
     return np.concatenate([angles, np.repeat(begun, 2, 1)], 1)
 
@@ -160,7 +168,7 @@ def told(
             which = ANGLES.index(TURNS[name])
             result[name] = (found.watched_final[:, which] - angles[:, which]) / (2 * np.pi)
         else:
-            result[name] = _error(report, last) if name == ERROR else last[name]
+            result[name] = landing_error(report.target, last) if name == ERROR else last[name]
     rows = dict(zip(watched(report.extremes), found.watched_final.T, strict=True))
     result |= {name: rows[name] for name in watched(report.extremes)[3:]}
     if along is not None:
@@ -170,7 +178,7 @@ def told(
         flown = times[None, :] <= found.end[:, None]
         result |= {f"{n}_history": np.where(flown, seen[n], np.nan) for n in report.history}
     ended = np.where(sound, found.status, _NO_TAKEOFF).astype("u1")
-    lost = ended >= _FAILED
+    lost = ended >= FAILED
     result = {
         name: np.where(lost.reshape(-1, *[1] * (x.ndim - 1)), np.nan, x)
         for name, x in result.items()
@@ -181,11 +189,13 @@ def told(
     return result
 
 
-def _error(report: Report, last: Mapping[str, Array]) -> Array:
-    def off(name: str) -> Array:
-        return (last[name] - report.target[name]) ** 2
+def landing_error(target: Mapping[str, float], last: Mapping[str, Array | float]) -> Array:
+    """The e of `Report` of what was last, by name, against a target."""
 
-    body = sum((off(n) for n in ANGLES if n in report.target), np.zeros(()))
-    joints = [n for n in report.target if n not in ANGLES]
+    def off(name: str) -> Array:
+        return np.asarray(last[name] - target[name]) ** 2
+
+    body = sum((off(n) for n in ANGLES if n in target), np.zeros(()))
+    joints = [n for n in target if n not in ANGLES]
     shape = sum((off(n) for n in joints), np.zeros(())) / max(len(joints), 1)
     return np.sqrt((body + shape) / 4)

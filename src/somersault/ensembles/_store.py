@@ -24,8 +24,9 @@ import numpy as np
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._files import umask
 from somersault.ensembles._plan import SAMPLE, Plan
-from somersault.ensembles._report import ENDINGS, UNFLOWN, Variable, variables
+from somersault.ensembles._report import ENDINGS, Variable, variables
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -115,7 +116,7 @@ def create(path: Path, plan: Plan, cut: Layout) -> None:
         with warnings.catch_warnings():  # that the metadata in one piece are zarr's own addition
             warnings.simplefilter("ignore")
             zarr.consolidate_metadata(group.store)
-        fresh.chmod(0o777 & ~_umask())
+        fresh.chmod(0o777 & ~umask())
         try:
             os.rename(fresh, path)
         except OSError:
@@ -127,20 +128,13 @@ def create(path: Path, plan: Plan, cut: Layout) -> None:
         raise
 
 
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
-
-
 def _array(
     group: zarr.Group, name: str, v: Variable, dims: tuple[str, ...], shape: tuple[int, ...],
     chunk: tuple[int, ...], samples: int,
 ) -> None:  # fmt: skip
     if v.over_time:
         dims, shape, chunk = (*dims, "history_time"), (*shape, samples), (*chunk, samples)
-    fill: Any = UNFLOWN if name == "ended" else np.nan if v.dtype == "f8" else 0
-    made = _create(group, name, v.dtype, shape, chunk, dims, fill)
+    made = _create(group, name, v.dtype, shape, chunk, dims, v.fill)
     made.attrs.put(variable_attributes(name, v))
 
 
@@ -287,9 +281,13 @@ def _write(path: Path, plan: Plan, cut: Layout, k: int, rows: Mapping[str, Array
         along = region[dims.index(SAMPLE)]
         for name, values in plan.drawn(np.arange(along.start, along.stop)).items():
             arrays[name][along] = values
-    shape = tuple(r.stop - r.start for r in region)
     for name, values in rows.items():
-        arrays[name][region] = values.reshape(*shape, *values.shape[1:])
+        arrays[name][region] = _shaped(values, region)
+
+
+def _shaped(values: Array, region: tuple[slice, ...]) -> Array:
+    """Rows of flights (N, …) as the block of the dimensions that they are."""
+    return values.reshape(*(r.stop - r.start for r in region), *values.shape[1:])
 
 
 @lru_cache(maxsize=4)
@@ -346,8 +344,7 @@ def gathered(plan: Plan, cut: Layout) -> tuple[xr.Dataset, Any]:
     times = plan.report.times(plan.duration)
     found: dict[str, Any] = {}
     for name, v in variables(plan.report, plan.system).items():
-        fill: Any = UNFLOWN if name == "ended" else np.nan if v.dtype == "f8" else 0
-        whole = np.full((*shape, len(times)) if v.over_time else shape, fill, v.dtype)
+        whole = np.full((*shape, len(times)) if v.over_time else shape, v.fill, v.dtype)
         over = (*dims, "history_time") if v.over_time else dims
         found[name] = (over, whole, variable_attributes(name, v))
     coords: dict[str, Any] = {}
@@ -361,8 +358,7 @@ def gathered(plan: Plan, cut: Layout) -> tuple[xr.Dataset, Any]:
 
     def put(k: int, rows: Mapping[str, Array]) -> None:
         region = cut.region(k)
-        lengths = tuple(r.stop - r.start for r in region)
         for name, values in rows.items():
-            found[name][1][region] = values.reshape(*lengths, *values.shape[1:])
+            found[name][1][region] = _shaped(values, region)
 
     return data, put

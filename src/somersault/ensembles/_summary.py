@@ -10,17 +10,15 @@ from scipy import special
 
 from somersault._errors import SomersaultError
 from somersault.ensembles._plan import SAMPLE
-from somersault.ensembles._report import ENDINGS, ERROR, UNFLOWN
+from somersault.ensembles._report import ENDINGS, ERROR, FAILED, UNFLOWN
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_FAILED = ENDINGS.index("too many steps")
-
 
 def failed(ended: xr.DataArray) -> xr.DataArray:
     """Whether flights ended otherwise than by their duration or an event; not yet flown: no."""
-    return (ended >= _FAILED) & (ended != UNFLOWN)
+    return (ended >= FAILED) & (ended != UNFLOWN)
 
 
 def within(data: xr.Dataset, tolerance: float | None) -> xr.DataArray:

@@ -14,7 +14,7 @@ from somersault.dynamics._tree import parameter_names
 from somersault.ensembles._vary import Vary
 from somersault.flight._columns import Name, Numbers
 from somersault.model import Model
-from somersault.model._mirror import mirror_pairs
+from somersault.model._mirror import named_pairs, reflection
 
 _JOINT = re.compile(
     r"^joints\.(.+)\.(angle|rate|stiffness|damping|rest|pretension|times|angles)(?:\.(\d+))?$"
@@ -74,12 +74,12 @@ def _of_joint(
     model: Model, values: Numbers, where: str, path: str, joint: str, what: str, k: str | None
 ) -> list[Target]:
     sides = [(joint, 1.0, 0.0)]
-    pair = next((p for p in mirror_pairs(model) if p.name == joint and p.left != p.right), None)
+    pair = named_pairs(model).get(joint)
     if pair is not None and joint not in model.speeds:
-        left, right = (model.joint(model.speeds[at]) for at in (pair.left, pair.right))
-        sign = float(pair.sign) if what in _SIGNED else 1.0
-        offset = right.reference - sign * left.reference if what in _ABOUT else 0.0
-        sides = [(left.name, 1.0, 0.0), (right.name, sign, offset)]
+        left, right = (model.speeds[at] for at in (pair.left, pair.right))
+        factor, offset = reflection(model, pair)
+        image = (factor if what in _SIGNED else 1.0, offset if what in _ABOUT else 0.0)
+        sides = [(left, 1.0, 0.0), (right, *image)]
     found = []
     for name, factor, offset in sides:
         try:

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from somersault._array import Array
-from somersault.flight._path import Path, increasing, moves
+from somersault.flight._path import Path, increasing, moves, polynomial
 from somersault.flight._takeoff import LIMIT_SLACK, JointPlan, Takeoff
 from somersault.model._types import Joint
 
@@ -92,10 +92,8 @@ def position(plan: JointPlan, values: Numbers, count: int) -> tuple[Array, Array
             return q, np.zeros((count, 3))
         return q, row(values, [("rate", name, k) for k in (1, 2, 3)], count)
     if plan.on_path:
-        begun = path(plan, values, count).at(np.zeros((count, 1)))
-        s, c = -begun[0], begun[1]
-        angle = sum(c[..., k] * s**k for k in range(c.shape[-1]))
-        rate = sum(k * c[..., k] * s ** (k - 1) for k in range(1, c.shape[-1]))
+        since, coefficients = path(plan, values, count).at(np.zeros((count, 1)))
+        angle, rate, _ = polynomial(-since, list(np.moveaxis(coefficients, -1, 0)))
         shape = (count, 1)
         return np.broadcast_to(angle, shape), np.broadcast_to(rate, shape)
     q = row(values, [("angle", name)], count)

@@ -22,7 +22,14 @@ from somersault.flight._numbers import number
 from somersault.flight._path import moves, value
 from somersault.flight._start import start
 from somersault.flight._system import system
-from somersault.flight._takeoff import JointPlan, JointTakeoff, Takeoff, kinds, plans
+from somersault.flight._takeoff import (
+    JointPlan,
+    JointTakeoff,
+    Takeoff,
+    kinds,
+    plans,
+    require_takeoff,
+)
 from somersault.model import Model, load
 from somersault.model._pose import pose as posed
 
@@ -102,8 +109,7 @@ def with_momentum(model: str | Model, takeoff: Takeoff) -> Takeoff:
 
 
 def _joints(model: Model, takeoff: Takeoff) -> tuple[JointPlan, ...]:
-    if not isinstance(takeoff, Takeoff):
-        raise SomersaultError(f"a takeoff is a somersault.Takeoff, and not {takeoff!r}")
+    require_takeoff(takeoff)
     return plans(model, takeoff.joints)
 
 

@@ -17,7 +17,7 @@ from somersault.flight._flight import Flight
 from somersault.flight._numbers import number, numbers
 from somersault.flight._start import Start, start
 from somersault.flight._system import System, system
-from somersault.flight._takeoff import Takeoff, kinds, plans
+from somersault.flight._takeoff import Takeoff, kinds, plans, require_takeoff
 from somersault.model import Model, load
 
 Event = Literal["quarter twist"]
@@ -50,9 +50,8 @@ def fly(
     """
     model = load(model)
     takeoff = Takeoff() if takeoff is None else takeoff
-    if not isinstance(takeoff, Takeoff):
-        raise SomersaultError(f"a takeoff is a somersault.Takeoff, and not {takeoff!r}")
-    duration = number("duration", duration)
+    require_takeoff(takeoff)
+    duration = flight_time(duration)
     times = _times(duration, samples)
     g = numbers("gravity", gravity, 3)
     check_ending(accuracy, until)
@@ -60,6 +59,13 @@ def fly(
     chosen = system(model, kinds(joints), until, tape=takeoff.tape is not None)
     begun = start(chosen, takeoff, joints)
     return _flown(chosen, begun, takeoff, times, duration, g, accuracy)
+
+
+def flight_time(duration: float) -> float:
+    """A duration in s; SomersaultError for one that is no flight."""
+    if number("duration", duration) <= 0:
+        raise SomersaultError(f"duration {duration:g} s is no flight; give a positive number")
+    return float(duration)
 
 
 def check_ending(accuracy: float, until: str | None) -> None:
@@ -71,8 +77,6 @@ def check_ending(accuracy: float, until: str | None) -> None:
 
 
 def _times(duration: float, samples: int | Sequence[float] | Array | None) -> Array:
-    if duration <= 0:
-        raise SomersaultError(f"duration {duration:g} s is no flight; give a positive number")
     if samples is None:
         samples = int(min(max(2, math.ceil(100 * duration) + 1), 100_001))
     if isinstance(samples, int | np.integer) and not isinstance(samples, bool):

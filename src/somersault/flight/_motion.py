@@ -20,7 +20,7 @@ from somersault.flight._numbers import MOST, number
 from somersault.flight._path import DEGREE, Path, check, increasing, moves, polynomial
 from somersault.flight._takeoff import LIMIT_SLACK, JointTakeoff
 from somersault.model import Joint, Model, load
-from somersault.model._mirror import Pair, mirror_pairs
+from somersault.model._mirror import Pair, mirror_pairs, named_pairs, reflection
 
 _TURNS = 4 * pi  # rad: no joint winds up so far; degrees read as radians soon do
 _BETWEEN = 4  # points within each piece at which limits are checked beside its extremes
@@ -222,7 +222,7 @@ def spread(model: Model, names: Iterable[str]) -> dict[str, tuple[str, float, fl
         meant = {name: (name, 1.0, 0.0)}
         if name in pairs and name not in model.speeds:
             left, right = (model.speeds[k] for k in (pairs[name].left, pairs[name].right))
-            meant = {left: (name, 1.0, 0.0), right: (name, *_reflection(model, pairs[name], left))}
+            meant = {left: (name, 1.0, 0.0), right: (name, *reflection(model, pairs[name]))}
         for joint in meant:
             model.joint(joint)
             if joint in found:
@@ -320,18 +320,7 @@ def _keyframes(name: str, rows: Sequence[tuple[float, float]]) -> Array:
 def _pairs(model: Model) -> dict[str, Pair]:
     """Pairs of hinges or slides of either side, by the name that they share."""
     joints = {joint.name for joint in model.joints if joint.kind != "ball"}
-    return {
-        pair.name: pair
-        for pair in mirror_pairs(model)
-        if pair.left != pair.right and model.speeds[pair.left] in joints
-    }
-
-
-def _reflection(model: Model, pair: Pair, origin: str) -> tuple[float, float]:
-    """Factor and offset that make one side's angle the other's; `origin` is the first side."""
-    left, right = (model.joint(model.speeds[k]).reference for k in (pair.left, pair.right))
-    start, finish = (left, right) if origin == model.speeds[pair.left] else (right, left)
-    return float(pair.sign), finish - pair.sign * start
+    return {n: pair for n, pair in named_pairs(model).items() if model.speeds[pair.left] in joints}
 
 
 def _images(model: Model) -> dict[str, tuple[str, float, float]]:
@@ -341,8 +330,9 @@ def _images(model: Model) -> dict[str, tuple[str, float, float]]:
     for pair in mirror_pairs(model):
         left, right = model.speeds[pair.left], model.speeds[pair.right]
         if left in joints:
-            images[left] = (right, *_reflection(model, pair, left))
-            images[right] = (left, *_reflection(model, pair, right))
+            factor, offset = reflection(model, pair)
+            images[left] = (right, factor, offset)
+            images[right] = (left, factor, -factor * offset)
     return images
 
 

@@ -73,9 +73,8 @@ def moves(times: Array, values: Array) -> Path:
 def value(path: Path, time: float) -> tuple[float, float]:
     """Value and rate of one path at a time."""
     origin, coefficients = path.at(np.array([[time]]))
-    s, c = time - float(origin[0, 0]), coefficients[0, 0]
-    powers = np.arange(1, DEGREE + 1)
-    return float(c @ s ** np.arange(DEGREE + 1)), float((powers * c[1:]) @ s ** (powers - 1))
+    angle, rate, _ = polynomial(time - float(origin[0, 0]), coefficients[0, 0].tolist())
+    return angle, rate
 
 
 def polynomial(s: Any, coefficients: Sequence[Any]) -> tuple[Any, Any, Any]:

@@ -11,13 +11,15 @@ from somersault._errors import SomersaultError
 from somersault._files import write
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from somersault.flight._flight import Flight
 
 
 def save(flight: Flight, path: Path) -> None:
     """Write NetCDF or CSV by the file's ending, whole or not at all."""
     check_ending(path)
-    write(path, csv(flight) if path.suffix.lower() == ".csv" else _netcdf(flight))
+    write(path, csv(flight) if path.suffix.lower() == ".csv" else netcdf(flight.dataset))
 
 
 def check_ending(path: Path) -> None:
@@ -43,8 +45,9 @@ def csv(flight: Flight) -> str:
     return "\n".join([quoted, *(",".join(map(repr, row)) for row in rows)]) + "\n"
 
 
-def _netcdf(flight: Flight) -> bytes:
+def netcdf(data: xr.Dataset) -> bytes:
+    """A dataset as the bytes of a NetCDF file."""
     with tempfile.TemporaryDirectory() as folder:
-        file = os.path.join(folder, "flight.nc")
-        flight.dataset.to_netcdf(file, engine="h5netcdf")
+        file = os.path.join(folder, "data.nc")
+        data.to_netcdf(file, engine="h5netcdf")
         return Path(file).read_bytes()

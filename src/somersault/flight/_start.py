@@ -59,8 +59,9 @@ class Start:
 def start(system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...]) -> Start:
     """One takeoff."""
     found = starts(system, takeoff, plans, numbers(takeoff, plans), 1)
+    h = momentum(system, found)[0]
     for plan in plans:
-        if plan.hold and takeoff.spin is None and not np.any(momentum(system, found)):
+        if plan.hold and takeoff.spin is None and not np.any(h):
             raise SomersaultError(
                 f"joint {plan.joint.name}: hold balances a spin, and this takeoff has none"
             )
@@ -70,7 +71,7 @@ def start(system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...]) -> Sta
         if plan.hold
     }
     return Start(
-        found.quaternion[0], found.omega[0], found.q[0], found.u[0], momentum(system, found)[0],
+        found.quaternion[0], found.omega[0], found.q[0], found.u[0], h,
         found.angles[0],
         tuple(replace(p, pretension=held.get(p.joint.name, p.pretension)) for p in plans), found,
     )  # fmt: skip

@@ -12,7 +12,7 @@ from somersault._errors import SomersaultError
 from somersault.flight._numbers import MOST, number, numbers
 from somersault.flight._path import Path, check, moves, value
 from somersault.model import Joint, Model
-from somersault.model._mirror import mirror_pairs
+from somersault.model._mirror import named_pairs, reflection
 
 LIMIT_SLACK = 1e-9  # rad beyond a joint's limits that count as within
 Motion = Literal["locked", "free", "sprung", "prescribed", "compliant"]
@@ -113,6 +113,12 @@ class Takeoff:
                 raise SomersaultError("takeoff quaternion is zero, which is no attitude")
 
 
+def require_takeoff(takeoff: Any) -> None:
+    """SomersaultError for anything that is not a takeoff."""
+    if not isinstance(takeoff, Takeoff):
+        raise SomersaultError(f"a takeoff is a somersault.Takeoff, and not {takeoff!r}")
+
+
 @dataclass(frozen=True)
 class Kind:
     """What the equations must know of a joint: its motion, whether its gains follow its path, and
@@ -169,13 +175,13 @@ def plans(model: Model, joints: Mapping[str, JointTakeoff]) -> tuple[JointPlan, 
 
 
 def _by_joint(model: Model, joints: Mapping[str, JointTakeoff]) -> dict[str, JointTakeoff]:
-    pairs = {pair.name: pair for pair in mirror_pairs(model) if pair.left != pair.right}
+    pairs = named_pairs(model)
     given: dict[str, JointTakeoff] = {}
     for name, takeoff in joints.items():
         both = {name: takeoff}
         if name in pairs and name not in model.speeds:
             left, right = (model.speeds[k] for k in (pairs[name].left, pairs[name].right))
-            mirrored = _mirrored(takeoff, model.joint(left), model.joint(right), pairs[name].sign)
+            mirrored = _mirrored(takeoff, left, *reflection(model, pairs[name]))
             both = {left: takeoff, right: mirrored}
         for joint in both:
             model.joint(joint)
@@ -185,22 +191,18 @@ def _by_joint(model: Model, joints: Mapping[str, JointTakeoff]) -> dict[str, Joi
     return given
 
 
-def _mirrored(takeoff: JointTakeoff, left: Joint, right: Joint, sign: int) -> JointTakeoff:
+def _mirrored(takeoff: JointTakeoff, left: str, factor: float, offset: float) -> JointTakeoff:
     def image(angle: Any) -> float | None:
-        if angle is None:
-            return None
-        return right.reference + sign * (number(f"joint {left.name}", angle) - left.reference)
+        return None if angle is None else offset + factor * number(f"joint {left}", angle)
 
     return replace(
         takeoff,
         angle=image(takeoff.angle),
-        rate=sign * number(f"joint {left.name}: rate", takeoff.rate),
+        rate=factor * number(f"joint {left}: rate", takeoff.rate),
         rest=image(takeoff.rest),
-        pretension=sign * number(f"joint {left.name}: pretension", takeoff.pretension),
+        pretension=factor * number(f"joint {left}: pretension", takeoff.pretension),
         angles=[image(angle) or 0.0 for angle in takeoff.angles],
-        path=None
-        if takeoff.path is None
-        else takeoff.path.image(sign, right.reference - sign * left.reference),
+        path=None if takeoff.path is None else takeoff.path.image(factor, offset),
     )
 
 

@@ -50,6 +50,19 @@ def mirror_pairs(model: Model) -> tuple[Pair, ...]:
     return best
 
 
+def named_pairs(model: Model) -> dict[str, Pair]:
+    """The left–right pairs by the name that they share."""
+    return {pair.name: pair for pair in mirror_pairs(model) if pair.left != pair.right}
+
+
+def reflection(model: Model, pair: Pair) -> tuple[float, float]:
+    """Factor and offset that make the left side's angle the right side's, about the poses in which
+    the file draws them, which are each other's image; the factor turns rates over."""
+    references = {joint.name: joint.reference for joint in model.joints if joint.kind != "ball"}
+    left, right = (references.get(model.speeds[k], 0.0) for k in (pair.left, pair.right))
+    return float(pair.sign), right - pair.sign * left
+
+
 @dataclass(frozen=True)
 class _Drawn:
     """A body as the file draws it, in the base's axes: frame, centre of mass and inertia."""

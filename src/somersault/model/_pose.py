@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
-from somersault.model._mirror import mirror_pairs
+from somersault.model._mirror import named_pairs, reflection
 from somersault.model._types import Joint, Model
 
 
@@ -83,16 +83,16 @@ def spread(
     With `mirrored` the right side gets the sign under which the pair is symmetric (a pose);
     without, both get the same number (a stiffness).
     """
-    pairs = {pair.name: pair for pair in mirror_pairs(model) if pair.left != pair.right}
+    pairs = named_pairs(model)
     result: dict[str, ArrayLike] = {}
     for name, value in values.items():
         if name in pairs and name not in model.speeds:
             pair = pairs[name]
             left, right = model.speeds[pair.left], model.speeds[pair.right]
             both = {left: value, right: value}
-            if mirrored:  # about the references, which are each other's image
-                from_left = np.asarray(value, float) - _reference(model, left)
-                both[right] = _reference(model, right) + pair.sign * from_left
+            if mirrored:
+                factor, offset = reflection(model, pair)
+                both[right] = offset + factor * np.asarray(value, float)
         else:
             both = {name: value}
         for speed in both:
@@ -100,7 +100,3 @@ def spread(
                 raise SomersaultError(f"{speed} is given twice, by its own name and its pair's")
         result |= both
     return result
-
-
-def _reference(model: Model, speed: str) -> float:
-    return next((joint.reference for joint in model.joints if joint.name == speed), 0.0)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -91,16 +90,10 @@ def _watched(entries: Sequence[Entry], progress: bool) -> Iterable[Entry]:
 
 def _save(figure: Any, stem: Path) -> None:
     """SVG and PNG that are the same, byte for byte, whenever they are made."""
-    formats: dict[str, dict[str, Any]] = {
-        ".svg": {"metadata": {"Date": None, "Creator": None}},
-        ".png": {"dpi": 160, "metadata": {"Software": None}},
-    }
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # laid out once, and the same in both files
-    for ending, options in formats.items():
-        held = io.BytesIO()
-        figure.savefig(held, format=ending[1:], **options)
-        write(stem.with_name(stem.name + ending), held.getvalue())
+    for ending in ("svg", "png"):
+        write(stem.with_name(f"{stem.name}.{ending}"), _style.saved(figure, ending))
 
 
 def _section(entry: Entry, result: Result) -> Section:

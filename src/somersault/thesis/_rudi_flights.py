@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from somersault._array import Array
+from somersault.ensembles._report import landing_error
 from somersault.flight import Flight, fly
 from somersault.model import named_pose
 from somersault.thesis import _rudi as rudi
@@ -26,10 +27,7 @@ _GROUPS = ("shoulder", "elbow", "hip", "torso")
 
 def error(flight: Flight) -> float:
     """The landing error e of section 6.3.2."""
-    wanted, end = rudi.target(rudi.nominal()), rudi.target(flight)
-    body = sum((wanted[k] - end[k]) ** 2 for k in ("somersault", "tilt", "twist"))
-    joints = [(wanted[k] - end[k]) ** 2 for k in rudi.joint_names()]
-    return float(np.sqrt((body + np.mean(joints)) / 4))
+    return float(landing_error(rudi.target(rudi.nominal()), rudi.target(flight)))
 
 
 @cache
