@@ -190,7 +190,6 @@ def outside(flights: int, folder: Path, chunks: int = 4) -> dict[str, float]:
     made.fly(0, 8)  # compiles
     watch, engine = Stopwatch(), made.system.integrator
     engine.__dict__["_fly"] = watch.around("machine code", engine._fly)
-    engine.__dict__["_step"] = watch.around("machine code", engine._step)
     plain = Integrator.solve
     Integrator.solve = watch.around("solve", plain)  # type: ignore[method-assign]
     write = watch.around("written", _store.write)
@@ -203,7 +202,7 @@ def outside(flights: int, folder: Path, chunks: int = 4) -> dict[str, float]:
                 write(store, made, cut, int(k), made.fly(*cut.flights(int(k))))
     finally:
         Integrator.solve = plain  # type: ignore[method-assign]
-        del engine.__dict__["_fly"], engine.__dict__["_step"]
+        del engine.__dict__["_fly"]
     whole = time.process_time() - begun
     flown = sum(cut.size(int(k)) for k in which)
     return {

@@ -15,10 +15,7 @@ import pytest
 
 from somersault.dynamics import _dop853 as table
 from somersault.dynamics import _integrator
-from somersault.dynamics import _integrator_llvm as rows
 from somersault.dynamics._integrator import STATUS, Integrator, Solution
-from somersault.dynamics._kernel import aligned
-from somersault.dynamics._llvm import LANES
 
 ENDED = {name: code for code, name in STATUS.items()}
 
@@ -157,14 +154,11 @@ def test_table_of_scipy() -> None:
 
 def test_one_step_is_of_order_nine() -> None:
     """A step's own error falls as h⁹: the compiled stages, not only their table."""
-    own, lengths = euler(), 0.3 * 2.0 ** -np.arange(0, 1.5, 0.25)
-    x, control = aligned((1, own.inputs, LANES)), aligned((1, rows.CONTROL_ROWS, LANES))
-    x[0] = np.array([0.0, 1.0, 1.0, 0.0])[:, None]
-    control[...] = 0.0
-    control[0, rows.STEP, : len(lengths)] = lengths
-    y = aligned((1, own.state, LANES))
-    own._step(x.ctypes.data, control.ctypes.data, y.ctypes.data, 1)
-    errors = np.abs(y[0, :, : len(lengths)] - jacobi(lengths).T).max(0)
+    lengths = 0.3 * 2.0 ** -np.arange(0, 1.5, 0.25)
+    start = np.tile([0.0, 1.0, 1.0], (len(lengths), 1))
+    found = euler().solve(start, np.empty((1, 0)), np.array([0.3]), 1e9, lengths, first_step=1.0)
+    assert set(found.steps) == {1}
+    errors = np.abs(found.final - jacobi(lengths)).max(1)
     order = np.polyfit(np.log(lengths), np.log(errors), 1)[0]
     assert order == pytest.approx(9.0, abs=0.2)
 

@@ -1,8 +1,9 @@
-"""DOP853 over eight flights at once, as LLVM text.
+"""A step of DOP853 for eight flights at once, as LLVM text.
 
-Each lane has its own time, step and fate; a lane that has arrived takes steps of length zero
-until the others have. Everything is arithmetic on <8 x double> with no branches but the
-loops, so what a lane does never depends on its neighbours.
+Each lane has its own time, step and fate. Everything is arithmetic on <8 x double> without a
+branch, so what a lane does never depends on its neighbours. A lane that finds a change of sign
+of the gauge in its step searches for the place with the lengths of its next steps, beside
+lanes that fly on.
 """
 
 from __future__ import annotations
@@ -11,31 +12,35 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from somersault.dynamics import _dop853 as table
-from somersault.dynamics._llvm import HEADER, LANES, VECTOR, number
+from somersault.dynamics._llvm import LANES, VECTOR, number
 
 # Rows of the control block, each of 8 lanes.
-TIME, STEP, END, STATUS, STEPS, GAUGE, TOLERANCE, LIMIT, RATE = range(9)
-CONTROL_ROWS = 9
+TIME, STEP, UNTIL, STATUS, STEPS, HELD_BACK = range(6)
+GAUGE, LOW, HIGH, LOW_GAUGE, HIGH_GAUGE, TRIALS = range(6, 12)
+CONTROL_ROWS = 12
 
-# Values of STATUS.
-FLYING, EVENT, TOO_MANY_STEPS, BROKEN = 0.0, 1.0, 2.0, 3.0
+# Values of STATUS; the last two are never handed back.
+FLYING, EVENT, TOO_MANY_STEPS, BROKEN, SEARCHING, EMPTY = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0
 
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 6.0
 _SHORTEST = 1e-13  # of the time, or of a second: a step below this means the flight broke
+_NEAR_ENOUGH = 1e-15  # of an event's time, or of a second
+_MOST_TRIALS = 60.0  # of the search for an event
 _MASK = f"<{LANES} x i1>"
 
 
 class _Text:
     """Emits instructions; every method returns the name of its result."""
 
-    def __init__(self) -> None:
+    def __init__(self, prefix: str) -> None:
         self.lines: list[str] = []
-        self._count = 0
+        self._prefix, self._count = prefix, 0
 
     def emit(self, expression: str) -> str:
         self._count += 1
-        self.lines.append(f"  %r{self._count} = {expression}")
-        return f"%r{self._count}"
+        name = f"%{self._prefix}{self._count}"
+        self.lines.append(f"  {name} = {expression}")
+        return name
 
     def at(self, base: str, row: int) -> str:
         return self.emit(f"getelementptr double, ptr {base}, i64 {row * LANES}")
@@ -67,6 +72,9 @@ class _Text:
     def neither(self, a: str) -> str:
         ones = "<" + ", ".join(["i1 true"] * LANES) + ">"
         return self.emit(f"xor {_MASK} {a}, {ones}")
+
+    def either(self, a: str, b: str) -> str:
+        return self.emit(f"or {_MASK} {a}, {b}")
 
     def where(self, mask: str, yes: str, no: str) -> str:
         return self.emit(f"select {_MASK} {mask}, {VECTOR} {yes}, {VECTOR} {no}")
@@ -118,31 +126,127 @@ class Rows:
         return 4 * self.state + 2 + self.parameters + self.watched
 
 
-def integrator_module(equations: str, rows: Rows, event: bool) -> str:
-    """LLVM text with `fly` and `step`.
+def step(rows: Rows, event: bool, tolerance: str, limit: str) -> tuple[str, str]:
+    """Instructions that take one step of every lane, and the name of the mask (i8) of the lanes
+    that stopped: at UNTIL, at an event, or failed.
 
-    `equations` defines @rhs(x, dy); with `event`, @gauge(x, g); and where there are watched rows
-    @watch(look, watched), called after each step that counts with the rows of `Rows.look`, and
-    @longest(x, step), which bounds a step so that nothing is missed between its ends.
-
-    fly(x, control, samples, out, count, blocks, most): carry each block of lanes to each of
-    `count` sample times in turn (a lane stops early at its own END, at a step in which the gauge
-    changes sign, or broken), and store the output rows: out[block][sample][row][lane]. In a
-    step that holds an event the lane stays at the step's beginning with STEP its length. After
-    `most` steps a block is left where it is; called again it goes on as if it had not been.
-    step(x, control, y, blocks): one step of length STEP from x, into y[block][row][lane], and
-    the gauge after it into the control.
+    They read and write the block %x, the control %c and the slopes %k, whose first is there,
+    with the parameters beside the trial state in %z; %g, %w and %v are room for @gauge and
+    @longest, and for what @watch reads and writes.
     """
-    return "\n".join(
-        [
-            HEADER,
-            equations,
-            _arrive(rows, event),
-            _single(rows, event),
-            _fly(rows, event),
-            _many_steps(rows),
-        ]
-    )
+    t = _Text("r")
+    time, status, until = t.load("%c", TIME), t.load("%c", STATUS), t.load("%c", UNTIL)
+    length, left = t.load("%c", STEP), t.two("fsub", until, time)
+    flying = t.test("oeq", status, number(FLYING))
+    if rows.watched:
+        t.lines.append("  call void @longest(ptr %x, ptr %g)")
+        length = t.least(length, t.load("%g", 0))
+    clipped = t.both(flying, t.test("oge", length, left))
+    taken = t.where(flying, t.where(clipped, left, length), number(0.0))
+    search = _Search(t, time, status) if event else None
+    if search:
+        taken = t.where(search.searching, search.middle, taken)
+    new = _stages(t, rows.state, taken, time)
+    squared = _error(t, rows.state, taken, tolerance, new)
+    t.lines.append(f"  call void @rhs(ptr %z, ptr {t.at('%k', 12 * rows.state)})")
+    good = t.both(flying, t.test("ole", squared, number(1.0)))
+    accepted = good
+    if search:
+        accepted, status = search.after(good, taken, status)
+    _next_length(t, flying, good, clipped, squared, taken, length)
+    steps = t.load("%c", STEPS)
+    steps = t.where(flying, t.two("fadd", steps, number(1.0)), steps)
+    t.store("%c", STEPS, steps)
+    size = t.most(t.call("fabs", time), number(1.0))
+    short = t.test("olt", t.load("%c", STEP), t.two("fmul", size, number(_SHORTEST)))
+    short = t.both(t.both(flying, t.neither(good)), short)
+    status = t.where(short, number(BROKEN), status)
+    full = t.both(t.test("oeq", status, number(FLYING)), t.test("oge", steps, limit))
+    status = t.where(full, number(TOO_MANY_STEPS), status)
+    t.store("%c", STATUS, status)
+    # The last step lands on its end exactly, whatever rounding adds.
+    arrived = t.where(clipped, until, t.two("fadd", time, taken))
+    if rows.watched:
+        for row, value in enumerate(_watched(t, rows, time, arrived), rows.before_watched):
+            t.store("%x", row, t.where(accepted, value, t.load("%x", row)))
+    now = t.where(accepted, arrived, time)
+    t.store("%c", TIME, now)
+    t.store("%x", rows.state, now)
+    for row in range(rows.state):
+        t.store("%x", row, t.where(accepted, new[row], t.load("%x", row)))
+        slope = t.where(accepted, t.load("%k", 12 * rows.state + row), t.load("%k", row))
+        t.store("%k", row, slope)
+    there = t.both(t.test("oeq", status, number(FLYING)), t.test("uge", now, until))
+    over = t.both(t.test("ogt", status, number(FLYING)), t.test("olt", status, number(SEARCHING)))
+    stopped = t.either(there, over)
+    bits = t.emit(f"bitcast {_MASK} {stopped} to i{LANES}")
+    return "\n".join(t.lines), bits
+
+
+class _Search:
+    """The search for an event by the lengths of whole steps, which have the full order of the
+    method, so that nothing is interpolated: regula falsi in its Illinois form."""
+
+    def __init__(self, t: _Text, time: str, status: str) -> None:
+        self._t, self._time = t, time
+        self.searching = t.test("oeq", status, number(SEARCHING))
+        self._low, self._high = t.load("%c", LOW), t.load("%c", HIGH)
+        self._at_low, self._at_high = t.load("%c", LOW_GAUGE), t.load("%c", HIGH_GAUGE)
+        across = t.two("fsub", self._high, self._low)
+        ratio = t.two("fdiv", across, t.two("fsub", self._at_high, self._at_low))
+        secant = t.two("fsub", self._high, t.two("fmul", self._at_high, ratio))
+        finite = t.test("olt", t.call("fabs", secant), number(float("inf")))
+        half = t.two("fmul", number(0.5), t.two("fadd", self._low, self._high))
+        self.middle = t.where(finite, secant, half)
+
+    def after(self, good: str, taken: str, status: str) -> tuple[str, str]:
+        """Which lanes go on from the end of this step, and the status of all."""
+        t = self._t
+        before = t.load("%c", GAUGE)
+        t.lines.append("  call void @gauge(ptr %z, ptr %g)")
+        gauge = t.load("%g", 0)
+        across = t.test("ole", t.two("fmul", before, gauge), number(0.0))
+        crossed = t.both(good, t.both(across, t.test("one", before, number(0.0))))
+        same = t.test("ogt", t.two("fmul", gauge, self._at_high), number(0.0))
+        low = t.where(same, self._low, self._high)
+        at_low = t.where(same, t.two("fmul", number(0.5), self._at_low), self._at_high)
+        trials = t.two("fadd", t.load("%c", TRIALS), number(1.0))
+        apart = t.call("fabs", t.two("fsub", self.middle, low))
+        near = t.two("fmul", number(_NEAR_ENOUGH), t.two("fadd", number(1.0), self._time))
+        done = t.test("ule", apart, near)
+        done = t.either(done, t.test("ueq", gauge, number(0.0)))
+        done = t.either(done, t.test("oge", trials, number(_MOST_TRIALS)))
+        found = t.both(self.searching, done)
+        zero = number(0.0)
+        t.store("%c", LOW, t.where(crossed, zero, low))
+        t.store("%c", LOW_GAUGE, t.where(crossed, before, at_low))
+        t.store("%c", HIGH, taken)
+        t.store("%c", HIGH_GAUGE, gauge)
+        t.store("%c", TRIALS, t.where(crossed, zero, trials))
+        accepted = t.either(t.both(good, t.neither(crossed)), found)
+        t.store("%c", GAUGE, t.where(accepted, gauge, before))
+        status = t.where(crossed, number(SEARCHING), status)
+        return accepted, t.where(found, number(EVENT), status)
+
+
+def _next_length(
+    t: _Text, flying: str, good: str, clipped: str, squared: str, taken: str, length: str
+) -> None:
+    """What step a lane will try next, into its control."""
+    root = t.call("sqrt", squared)
+    eighth = t.call("sqrt", t.call("sqrt", t.call("sqrt", root)))
+    factor = t.two("fdiv", number(_SAFETY), t.most(eighth, number(_SAFETY / _GROW)))
+    sound = t.both(t.test("ord", squared, squared), t.test("oge", factor, number(_SHRINK)))
+    factor = t.where(sound, factor, number(_SHRINK))
+    # Not longer at once after a step that failed.
+    held_back = t.test("ogt", t.load("%c", HELD_BACK), number(0.0))
+    factor = t.where(held_back, t.least(factor, number(1.0)), factor)
+    wanted = t.two("fmul", taken, factor)
+    # A step cut short by the end says little about the next; keep the one before it.
+    wanted = t.where(t.both(clipped, good), t.most(length, wanted), wanted)
+    t.store("%c", STEP, t.where(flying, wanted, length))
+    failed = t.both(flying, t.neither(good))
+    t.store("%c", HELD_BACK, t.where(failed, number(1.0), number(0.0)))
 
 
 def _watched(t: _Text, rows: Rows, before: str, after: str) -> list[str]:
@@ -195,222 +299,15 @@ def _error(t: _Text, state: int, step: str, tolerance: str, new: list[str]) -> s
     return t.two("fdiv", scaled, t.two("fmul", below, number(float(state))))
 
 
-def _arrive(rows: Rows, event: bool) -> str:
-    """arrive(x, control, k, z, …, until): step one block until every lane is there or done."""
-    t = _Text()
-    state = rows.state
-    time, step = t.load("%c", TIME), t.load("%c", STEP)
-    end = t.least(t.load("%c", END), "%until")
-    status = t.load("%c", STATUS)
-    left = t.two("fsub", end, time)
-    flying = t.both(t.test("oeq", status, number(FLYING)), t.test("ogt", left, number(0.0)))
-    any_flying = t.emit(f"bitcast {_MASK} {flying} to i{LANES}")
-    needed = t.emit(f"icmp ne i{LANES} {any_flying}, 0")
-    allowed = t.emit("icmp slt i64 %taken, %most")
-    go = t.emit(f"and i1 {needed}, {allowed}")
-    t.lines += [f"  br i1 {go}, label %advance, label %done", "advance:"]
-    if rows.watched:
-        t.lines.append("  call void @longest(ptr %x, ptr %g)")
-        step = t.least(step, t.load("%g", 0))
-    clipped = t.test("oge", step, left)
-    taken = t.where(flying, t.where(clipped, left, step), number(0.0))
-    new = _stages(t, state, taken, time)
-    squared = _error(t, state, taken, t.load("%c", TOLERANCE), new)
-    ahead = t.at("%k", 12 * state)
-    t.lines.append(f"  call void @rhs(ptr %z, ptr {ahead})")
-    accepted = t.both(flying, t.test("ole", squared, number(1.0)))
-    crossed = accepted
+def renewed(rows: Rows, event: bool, fresh: str) -> str:
+    """Instructions that give the lanes of the mask `fresh` (i8) the slope and the gauge of where
+    they are."""
+    t = _Text("n")
+    lanes = t.emit(f"bitcast i{LANES} {fresh} to {_MASK}")
+    t.lines.append(f"  call void @rhs(ptr %x, ptr {t.at('%k', rows.state)})")
+    for row in range(rows.state):
+        t.store("%k", row, t.where(lanes, t.load("%k", rows.state + row), t.load("%k", row)))
     if event:
-        gauge_before = t.load("%c", GAUGE)
-        t.lines.append("  call void @gauge(ptr %z, ptr %g)")
-        gauge = t.load("%g", 0)
-        across = t.test("olt", t.two("fmul", gauge_before, gauge), number(0.0))
-        crossed = t.both(accepted, across)
-        kept = t.both(accepted, t.neither(crossed))
-        t.store("%c", GAUGE, t.where(kept, gauge, gauge_before))
-        accepted = kept
-    root = t.call("sqrt", squared)
-    eighth = t.call("sqrt", t.call("sqrt", t.call("sqrt", root)))
-    factor = t.two("fdiv", number(_SAFETY), t.most(eighth, number(_SAFETY / _GROW)))
-    sound = t.both(t.test("ord", squared, squared), t.test("oge", factor, number(_SHRINK)))
-    factor = t.where(sound, factor, number(_SHRINK))
-    held_back = t.load("%c", RATE)  # 1 after a step that failed: do not grow at once
-    factor = t.where(t.test("ogt", held_back, number(0.0)), t.least(factor, number(1.0)), factor)
-    wanted = t.two("fmul", taken, factor)
-    # A step cut short by the end says little about the next; keep the one before it.
-    wanted = t.where(t.both(clipped, accepted), t.most(step, wanted), wanted)
-    following = t.where(flying, wanted, step)
-    if event:
-        following = t.where(crossed, taken, following)
-        status = t.where(crossed, number(EVENT), status)
-    failed = t.both(flying, t.neither(accepted))
-    if event:
-        failed = t.both(failed, t.neither(crossed))
-    t.store("%c", RATE, t.where(failed, number(1.0), number(0.0)))
-    size = t.most(t.call("fabs", time), number(1.0))
-    short = t.test("olt", following, t.two("fmul", size, number(_SHORTEST)))
-    status = t.where(t.both(failed, short), number(BROKEN), status)
-    steps = t.load("%c", STEPS)
-    steps = t.where(flying, t.two("fadd", steps, number(1.0)), steps)
-    full = t.both(flying, t.test("oge", steps, t.load("%c", LIMIT)))
-    untouched = t.test("oeq", status, number(FLYING))
-    status = t.where(t.both(full, untouched), number(TOO_MANY_STEPS), status)
-    t.store("%c", STEPS, steps)
-    t.store("%c", STATUS, status)
-    t.store("%c", STEP, following)
-    # The last step lands on the end exactly, whatever rounding adds.
-    arrived = t.where(clipped, end, t.two("fadd", time, taken))
-    now = t.where(accepted, arrived, time)
-    if rows.watched:
-        for row, value in enumerate(_watched(t, rows, time, arrived), rows.before_watched):
-            t.store("%x", row, t.where(accepted, value, t.load("%x", row)))
-    t.store("%c", TIME, now)
-    t.store("%x", state, now)
-    for row in range(state):
-        t.store("%x", row, t.where(accepted, new[row], t.load("%x", row)))
-        slope = t.where(accepted, t.load("%k", 12 * state + row), t.load("%k", row))
-        t.store("%k", row, slope)
-    body = "\n".join(t.lines)
-    return f"""
-define void @arrive(
-    ptr %x, ptr %c, ptr %k, ptr %z, ptr %g, ptr %w, ptr %v, {VECTOR} %until, i64 %most) #0 {{
-entry:
-  br label %again
-again:
-  %taken = phi i64 [ 0, %entry ], [ %next, %advance ]
-{body}
-  %next = add i64 %taken, 1
-  br label %again
-done:
-  ret void
-}}
-"""
-
-
-def _prepared(t: _Text, rows: Rows) -> None:
-    """The parameters beside the trial state in %z, and the first slope in %k."""
-    for row in range(rows.before_watched):
-        t.store("%z", row, t.load("%x", row))
-    t.lines.append("  call void @rhs(ptr %z, ptr %k)")
-
-
-def _gauged(t: _Text, state: str) -> None:
-    """The gauge of a state into the control."""
-    t.lines.append(f"  call void @gauge(ptr {state}, ptr %g)")
-    t.store("%c", GAUGE, t.load("%g", 0))
-
-
-def _single(rows: Rows, event: bool) -> str:
-    """single(x, control, …, y): one step of one block."""
-    t = _Text()
-    _prepared(t, rows)
-    time, step = t.load("%c", TIME), t.load("%c", STEP)
-    new = _stages(t, rows.state, step, time)
-    if rows.watched:
-        t.lines.append(f"  call void @rhs(ptr %z, ptr {t.at('%k', 12 * rows.state)})")
-        new += _watched(t, rows, time, t.two("fadd", time, step))
-    if event:
-        _gauged(t, "%z")
-    for row, value in enumerate(new):
-        t.store("%y", row, value)
-    body = "\n".join(t.lines)
-    return f"""
-define void @single(
-    ptr %x, ptr %c, ptr %k, ptr %z, ptr %g, ptr %w, ptr %v, ptr %y) #0 {{
-{body}
-  ret void
-}}
-"""
-
-
-def _memory(rows: Rows) -> str:
-    return f"""  %k = alloca [{13 * rows.state * LANES} x double], align 64
-  %z = alloca [{rows.before_watched * LANES} x double], align 64
-  %g = alloca [{LANES} x double], align 64
-  %w = alloca [{rows.look * LANES} x double], align 64
-  %v = alloca [{max(rows.watched, 1) * LANES} x double], align 64"""
-
-
-def _fly(rows: Rows, event: bool) -> str:
-    t = _Text()
-    _prepared(t, rows)
-    if event:
-        _gauged(t, "%x")
-    prepare = "\n".join(t.lines)
-    t = _Text()
-    t._count = 10000
-    kept = [*range(rows.state), *range(rows.before_watched, rows.inputs)]
-    for place, row in enumerate(kept):
-        t.store("%to", place, t.load("%x", row))
-    keep = "\n".join(t.lines)
-    splat = ", ".join([f"i32 {0}"] * LANES)
-    return f"""
-define void @fly(ptr %xs, ptr %cs, ptr %samples, ptr %out, i64 %count, i64 %blocks, i64 %most) #0 {{
-entry:
-{_memory(rows)}
-  br label %block
-block:
-  %b = phi i64 [ 0, %entry ], [ %bn, %blockend ]
-  %more = icmp slt i64 %b, %blocks
-  br i1 %more, label %start, label %finished
-start:
-  %xo = mul i64 %b, {rows.inputs * LANES}
-  %co = mul i64 %b, {CONTROL_ROWS * LANES}
-  %x = getelementptr double, ptr %xs, i64 %xo
-  %c = getelementptr double, ptr %cs, i64 %co
-{prepare}
-  br label %sample
-sample:
-  %s = phi i64 [ 0, %start ], [ %sn, %store ]
-  %left = icmp slt i64 %s, %count
-  br i1 %left, label %carry, label %blockend
-carry:
-  %tp = getelementptr double, ptr %samples, i64 %s
-  %ts = load double, ptr %tp
-  %t1 = insertelement {VECTOR} poison, double %ts, i32 0
-  %until = shufflevector {VECTOR} %t1, {VECTOR} poison, <{LANES} x i32> <{splat}>
-  call void @arrive(
-    ptr %x, ptr %c, ptr %k, ptr %z, ptr %g, ptr %w, ptr %v, {VECTOR} %until, i64 %most)
-  br label %store
-store:
-  %ob = mul i64 %b, %count
-  %os = add i64 %ob, %s
-  %oo = mul i64 %os, {rows.outputs * LANES}
-  %to = getelementptr double, ptr %out, i64 %oo
-{keep}
-  %sn = add i64 %s, 1
-  br label %sample
-blockend:
-  %bn = add i64 %b, 1
-  br label %block
-finished:
-  ret void
-}}
-"""
-
-
-def _many_steps(rows: Rows) -> str:
-    return f"""
-define void @step(ptr %xs, ptr %cs, ptr %ys, i64 %blocks) #0 {{
-entry:
-{_memory(rows)}
-  br label %block
-block:
-  %b = phi i64 [ 0, %entry ], [ %bn, %start ]
-  %more = icmp slt i64 %b, %blocks
-  br i1 %more, label %start, label %finished
-start:
-  %xo = mul i64 %b, {rows.inputs * LANES}
-  %co = mul i64 %b, {CONTROL_ROWS * LANES}
-  %yo = mul i64 %b, {rows.outputs * LANES}
-  %x = getelementptr double, ptr %xs, i64 %xo
-  %c = getelementptr double, ptr %cs, i64 %co
-  %y = getelementptr double, ptr %ys, i64 %yo
-  call void @single(
-    ptr %x, ptr %c, ptr %k, ptr %z, ptr %g, ptr %w, ptr %v, ptr %y)
-  %bn = add i64 %b, 1
-  br label %block
-finished:
-  ret void
-}}
-"""
+        t.lines.append("  call void @gauge(ptr %x, ptr %g)")
+        t.store("%c", GAUGE, t.where(lanes, t.load("%g", 0), t.load("%c", GAUGE)))
+    return "\n".join(t.lines)

@@ -232,9 +232,5 @@ def _bytes_told(plan: Plan) -> int:
 
 def _chunk(plan: Plan) -> int:
     """Flights in a chunk: about a second of work, some megabytes."""
-    samples = plan.report.samples if plan.report.history else 0
-    chosen = plan.system
-    rows = 3 + 2 * len(plan.report.extremes) + chosen.state
-    doubles = 12 * (rows + chosen.parameters) + samples * (3 * rows + 2 * chosen.parameters)
-    fitting = max(_CHUNK_BYTES // (8 * doubles), 64)
+    fitting = max(_CHUNK_BYTES // _bytes_told(plan), 64)
     return min(fitting, _CHUNK, max(_LEAST_CHUNK, -(-plan.count // _PARTS)))

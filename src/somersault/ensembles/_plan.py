@@ -23,17 +23,18 @@ from somersault.ensembles._report import Report
 from somersault.ensembles._targets import Target, body_names, check_apart, moved, targets
 from somersault.ensembles._vary import Vary
 from somersault.flight._columns import Name, numbers, sound
-from somersault.flight._course import Course, solve
 from somersault.flight._fly import TOLERANCE_PER_ACCURACY
 from somersault.flight._start import starts
 from somersault.flight._system import System, system
 from somersault.flight._takeoff import JointPlan, Takeoff, kinds, plans
+from somersault.flight._tape import course as course_of
 from somersault.model import Model
 
 SAMPLE = "sample"
 _MOST = 10**11  # flights
 _MOST_LISTED = 1_000
-_TOGETHER = 8_192  # flights whose numbers stay near the processor
+_TOGETHER = 16_384  # flights whose numbers are held at once,
+_TOGETHER_BYTES = 2**26  # or as many as these hold
 _NAME = re.compile(r"\w[\w-]*")  # of an array in a store, and of a word in its attributes
 _ENGINES = ("somersault", "casadi", "llvmlite", "numpy", "scipy")
 
@@ -132,8 +133,9 @@ class Plan:
         )
         found = {n: v.grid[at[n]] for n, v in self.vary.items() if v.grid is not None}
         if len(found) < len(self.vary):
-            places, back = np.unique(at[SAMPLE], return_inverse=True)
-            found |= {name: x[back] for name, x in self.drawn(places).items()}
+            least, most = int(at[SAMPLE].min()), int(at[SAMPLE].max())
+            drawn = self.drawn(np.arange(least, most + 1))
+            found |= {name: x[at[SAMPLE] - least] for name, x in drawn.items()}
         return found
 
     def fly(self, first: int, last: int) -> dict[str, Array]:
@@ -141,9 +143,20 @@ class Plan:
 
         Each flight's numbers depend on nothing but its own place.
         """
-        edges = [*range(first, last, _TOGETHER), last]
+        edges = [*range(first, last, self._together), last]
         parts = [self._fly(a, b) for a, b in pairwise(edges)]
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+    @cached_property
+    def _together(self) -> int:
+        chosen, report = self.system, self.report
+        rows = 3 + 2 * len(report.extremes) + chosen.state
+        samples = report.samples if report.history else 0
+        pieces = sum(len(plan.times) for plan in self.joints)
+        doubles = 12 * (rows + chosen.parameters)
+        doubles += samples * (3 * rows + 2 * chosen.parameters)
+        doubles += 2 * pieces * chosen.symbols.changing  # where each has paths of its own
+        return min(_TOGETHER, max(_TOGETHER_BYTES // (8 * doubles), 64))
 
     def _fly(self, first: int, last: int) -> dict[str, Array]:
         count, chosen = last - first, self.system
@@ -157,18 +170,13 @@ class Plan:
                 for n, x in values.items()
             }
         begun = starts(chosen, self.takeoff, self.joints, values, count)
-        course = Course(chosen, self.joints, begun, self.duration)
-        tape = self.takeoff.tape
-        state = chosen.start(begun.quaternion, begun.omega, begun.q, begun.u, tape)
+        course = course_of(chosen, self.takeoff, self.joints, begun, self.duration)
+        state = chosen.start(begun.quaternion, begun.omega, begun.q, begun.u)
         watched = _report.first_watched(self.report, chosen, begun.angles, state, course)
         times = self.report.times(self.duration)
         tolerance = self.accuracy * TOLERANCE_PER_ACCURACY
-        found = solve(chosen, state, course, times, tolerance, watched, self.steps)
-        final = course.parameters(found.end[:, None])[:, 0]
-        along = None
-        if self.report.history:
-            along = course.parameters(np.broadcast_to(times, (count, len(times))))
-        return _report.told(self.report, chosen, found, begun.angles, good, final, along, times)
+        found = course.solve(state, times, tolerance, watched, self.steps)
+        return _report.told(self.report, chosen, course, found, begun.angles, good, times)
 
     @cached_property
     def specification(self) -> dict[str, Any]:

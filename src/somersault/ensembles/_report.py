@@ -46,10 +46,10 @@ class Report:
     target: Mapping[str, float] = field(default_factory=dict)
 
     @property
-    def read(self) -> tuple[str, ...]:
-        """Quantities that must be read from states: those told, and those of the target."""
+    def at_the_end(self) -> tuple[str, ...]:
+        """Quantities that must be read from the last states: those told, and the target's."""
         plain = [q for q in self.quantities if q not in TURNS and q != ERROR]
-        return tuple(dict.fromkeys([*ANGLES, *plain, *self.target, *self.history]))
+        return tuple(dict.fromkeys([*plain, *self.target]))
 
     def times(self, duration: float) -> Array:
         """Sample times (K,), s; the end at least."""
@@ -150,18 +150,18 @@ def first_watched(
 
 
 def told(
-    report: Report, system: System, found: Solution, angles: Array, sound: Array,
-    final: Array, along: Array | None, times: Array,
+    report: Report, system: System, course: Course, found: Solution, angles: Array, sound: Array,
+    times: Array,
 ) -> dict[str, Array]:  # fmt: skip
     """The variables of N flights.
 
-    `angles` (N, 3) are those at takeoff; `final` (N, m) the parameters at the end, `along`
-    (N, K, m) at the sample times; `sound` (N,) is false where there was no takeoff.
+    `angles` (N, 3) are those at takeoff; `sound` (N,) is false where there was no takeoff.
     """
-    names = report.read
-    read = reader(names, system)
-    at = np.concatenate([found.watched_final[:, :3], found.final, found.end[:, None], final], 1)
-    last = dict(zip(names, read(at).T, strict=True))
+    last = _read(
+        report.at_the_end, system, course, found.watched_final[:, None, :3], found.final[:, None],
+        found.end[:, None],
+    )  # fmt: skip
+    last = {name: x[:, 0] for name, x in last.items()}
     result = {"time": found.end}
     for name in report.quantities:
         if name in TURNS:
@@ -171,22 +171,35 @@ def told(
             result[name] = landing_error(report.target, last) if name == ERROR else last[name]
     rows = dict(zip(watched(report.extremes), found.watched_final.T, strict=True))
     result |= {name: rows[name] for name in watched(report.extremes)[3:]}
-    if along is not None:
-        when = np.broadcast_to(times[None, :, None], (*found.states.shape[:2], 1))
-        at = np.concatenate([found.watched[..., :3], found.states, when, along], 2)
-        seen = dict(zip(names, np.moveaxis(read(at), -1, 0), strict=True))
+    if report.history:
+        when = np.broadcast_to(times, (len(found.end), len(times)))
+        seen = _read(report.history, system, course, found.watched[..., :3], found.states, when)
         flown = times[None, :] <= found.end[:, None]
         result |= {f"{n}_history": np.where(flown, seen[n], np.nan) for n in report.history}
     ended = np.where(sound, found.status, _NO_TAKEOFF).astype("u1")
     lost = ended >= FAILED
-    result = {
-        name: np.where(lost.reshape(-1, *[1] * (x.ndim - 1)), np.nan, x)
-        for name, x in result.items()
-    }
+    if lost.any():
+        result = {
+            name: np.where(lost.reshape(-1, *[1] * (x.ndim - 1)), np.nan, x)
+            for name, x in result.items()
+        }
     result["time"] = np.where(sound, found.end, np.nan)
     result["steps"] = np.where(sound, found.steps, 0).astype("i4")
     result["ended"] = ended
     return result
+
+
+def _read(
+    names: tuple[str, ...], system: System, course: Course, angles: Array, states: Array,
+    times: Array,
+) -> dict[str, Array]:  # fmt: skip
+    """Quantities (N, K) at angles (N, K, 3), states (N, K, n) and times (N, K)."""
+    found = dict(zip(ANGLES, np.moveaxis(angles, -1, 0), strict=True))
+    others = tuple(name for name in names if name not in ANGLES)
+    if others:
+        at = np.concatenate([angles, states, times[..., None], course.parameters(times)], 2)
+        found |= zip(others, np.moveaxis(reader(others, system)(at), -1, 0), strict=True)
+    return found
 
 
 def landing_error(target: Mapping[str, float], last: Mapping[str, Array | float]) -> Array:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -224,21 +225,19 @@ def _uniforms(
     size = len(names)
     if sequence == "saltelli":
         return dict(zip(names, _saltelli(size, seed, first, count), strict=True))
-    engine = _sobol(size, seed) if sequence == "sobol" else _halton(size, seed)
+    engine = deepcopy(_engine(sequence, size, seed))
     points = _points(engine, first, count)
     return {name: np.ascontiguousarray(points[:, k]) for k, name in enumerate(names)}
 
 
-def _sobol(size: int, seed: int) -> Any:
+@lru_cache(maxsize=16)
+def _engine(sequence: str, size: int, seed: int) -> Any:
+    """As it begins: to be copied, for drawing changes it."""
     from scipy.stats import qmc
 
+    if sequence == "halton":
+        return qmc.Halton(size, rng=seed)
     return qmc.Sobol(size, rng=seed, bits=32)  # with more, scipy's engine cannot skip
-
-
-def _halton(size: int, seed: int) -> Any:
-    from scipy.stats import qmc
-
-    return qmc.Halton(size, rng=seed)
 
 
 def _points(engine: Any, first: int, count: int) -> Array:
@@ -268,7 +267,7 @@ def _saltelli(size: int, seed: int, first: int, count: int) -> Array:
     """
     group = size + 2
     begin, end = first // group, (first + count - 1) // group + 1
-    engine = _sobol(2 * size, seed)
+    engine = deepcopy(_engine("sobol", 2 * size, seed))
     points = _points(engine, begin, end - begin)
     a, b = points[:, :size], points[:, size:]
     whole = np.repeat(a[:, None], group, 1)

@@ -12,12 +12,12 @@ from somersault._array import Array
 from somersault._errors import SomersaultError
 from somersault.attitude import angles_from_quaternion
 from somersault.dynamics._integrator import STATUS
-from somersault.flight._course import Course, solve
 from somersault.flight._flight import Flight
 from somersault.flight._numbers import number, numbers
 from somersault.flight._start import Start, start
 from somersault.flight._system import System, system
 from somersault.flight._takeoff import Takeoff, kinds, plans, require_takeoff
+from somersault.flight._tape import course as course_of
 from somersault.model import Model, load
 
 Event = Literal["quarter twist"]
@@ -100,11 +100,11 @@ def _flown(
 ) -> Flight:
     """Solve on points that are close enough to count turns on, if need be again on closer ones."""
     many = begun.many
-    course = Course(chosen, begun.plans, many, duration)
-    first = chosen.start(many.quaternion, many.omega, many.q, many.u, takeoff.tape)[0]
+    course = course_of(chosen, takeoff, begun.plans, many, duration)
+    first = chosen.start(many.quaternion, many.omega, many.q, many.u)
     points = _first_points(chosen, begun, np.union1d(times, [0.0, duration]))
     for _ in range(_MOST_REFINEMENTS):
-        solution = solve(chosen, first[None], course, points, accuracy * TOLERANCE_PER_ACCURACY)
+        solution = course.solve(first, points, accuracy * TOLERANCE_PER_ACCURACY)
         end, status = float(solution.end[0]), float(solution.status[0])
         flown = points < end
         states = np.concatenate([solution.states[0][flown], solution.final])

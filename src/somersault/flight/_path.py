@@ -17,6 +17,7 @@ from somersault._array import Array
 from somersault._errors import SomersaultError
 
 DEGREE = 5
+TAPE_DEGREE = 12
 _SHORTEST = 1e-6  # s
 _EARLY = 1e-9  # s that count as none
 

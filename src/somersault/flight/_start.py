@@ -144,7 +144,13 @@ def _pretensioned(
     values, q, bodies = begun.values, begun.q, begun.bodies
     shaped = [k for k in values if k[0] in ("angle", "times", "angles") or k[0] in system.bodies]
     if any(isinstance(values[k], np.ndarray) for k in shaped):
-        inertia, torques = holding(system.model, q, system.bodies, bodies, compiled=True)
+        both = np.concatenate([q, bodies], 1)
+        fresh = np.append(True, np.any(both[1:] != both[:-1], 1))  # many in a row may be alike
+        inertia, torques = holding(
+            system.model, q[fresh], system.bodies, bodies[fresh], compiled=True
+        )
+        same = np.cumsum(fresh) - 1
+        inertia, torques = inertia[same], torques[same]
     else:  # all in one pose
         inertia, torques = holding(system.model, q[:1], system.bodies, bodies[:1], compiled=False)
     if takeoff.spin is not None:

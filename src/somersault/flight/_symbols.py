@@ -1,8 +1,9 @@
 """The equations of a flight in symbols: from state, time and parameters to rates and torques.
 
-The state is (quaternion, ω, coordinates and speeds of the joints that move freely, ω of the
-motor tape's nominal flight). Where no joint moves freely only the attitude is unknown: then the
-state is the quaternion alone, and ω is what the angular momentum, a parameter, leaves it.
+The state is (quaternion, ω, coordinates and speeds of the joints that move freely). Where no
+joint moves freely only the attitude is unknown: then the state is the quaternion alone, and ω is
+what the angular momentum, a parameter, leaves it. Parameters are first those that change on the
+way (paths, the motor tape), then those that stay (bodies, joints, momentum).
 """
 
 from __future__ import annotations
@@ -20,13 +21,14 @@ from somersault.dynamics._newton_euler import inverse_dynamics, momentum
 from somersault.dynamics._springs import torques as spring_torques
 from somersault.dynamics._tree import tree
 from somersault.dynamics._vector import Vec, matvec, solve_symmetric, vsub
-from somersault.flight._path import DEGREE, polynomial
+from somersault.flight._path import DEGREE, TAPE_DEGREE, polynomial
 from somersault.flight._takeoff import Kind
 from somersault.model import Joint, Model
 
 ATTITUDE, RATE = 4, 3  # of a state: quaternion and ω
 SPRING = ("stiffness", "rest", "damping", "pretension")  # parameters of a joint that moves
 PATH = 1 + DEGREE + 1  # parameters of a path: since when, and its polynomial
+TAPED = TAPE_DEGREE + 1  # of each joint on the tape: its torque's polynomial
 GAINS = 2  # of a compliant joint: stiffness and damping
 STOPS = 4  # parameters of stops: where they are, stiffness and damping
 _ON_PATHS = ("prescribed", "compliant")
@@ -37,13 +39,13 @@ def moves_freely(kind: Kind) -> bool:
     return kind.motion not in ("locked", "prescribed")
 
 
-def parameter_count(joint: Joint, kind: Kind) -> int:
-    """How many parameters a joint has."""
+def lasting(joint: Joint, kind: Kind) -> int:
+    """How many parameters of a joint stay as they are."""
     if kind.motion == "prescribed":
-        return PATH
+        return 0
     if kind.motion == "locked":
         return joint.coordinates
-    own = PATH + GAINS if kind.motion in _ON_PATHS else len(SPRING)
+    own = GAINS if kind.motion in _ON_PATHS else len(SPRING)
     return own + (STOPS if kind.stopped else 0)
 
 
@@ -74,10 +76,13 @@ class Symbols:
         self.bound = not moving
         self.base = ATTITUDE if self.bound else ATTITUDE + RATE
         self.coordinates = sum(j.coordinates for j in moving)
-        self.moving = self.base + self.coordinates + sum(j.speeds for j in moving)
-        self.state = self.moving + (RATE if tape else 0)
-        self.of_joints = sum(parameter_count(j, k) for j, k in pairs)
-        self.parameters = len(bodies) + self.of_joints + (RATE if self.bound else 0)
+        self.state = self.base + self.coordinates + sum(j.speeds for j in moving)
+        self.paths = sum(k.motion in _ON_PATHS for k in kinds)
+        taped = sum(k.motion == "compliant" for k in kinds) if tape else 0
+        self.changing = PATH * self.paths + (1 + TAPED * taped if tape else 0)
+        of_joints = sum(lasting(j, k) for j, k in pairs)
+        own = self.changing + len(bodies) + of_joints
+        self.parameters = own + (RATE if self.bound else 0)
         self.y = ca.SX.sym("y", self.state)
         self.t = ca.SX.sym("t")
         self.p = ca.SX.sym("p", self.parameters)
@@ -90,19 +95,23 @@ class Symbols:
     @cached_property
     def tree(self) -> Any:
         """The links, with the bodies' numbers that are parameters."""
-        return tree(self.model, {name: self.p[k] for k, name in enumerate(self.bodies)})
+        own = enumerate(self.bodies, self.changing)
+        return tree(self.model, {name: self.p[k] for k, name in own})
 
     @cached_property
     def joints(self) -> list[_Joint]:
         """Each joint."""
         found = []
-        q, u, p = self.base, self.base + self.coordinates, len(self.bodies)
+        q, u, path = self.base, self.base + self.coordinates, 0
+        p = self.changing + len(self.bodies)
         for joint, kind in zip(self.model.joints, self.kinds, strict=True):
-            own = [self.p[p + k] for k in range(parameter_count(joint, kind))]
+            own = [self.p[p + k] for k in range(lasting(joint, kind))]
             p += len(own)
             wanted = None
             if kind.motion in _ON_PATHS:
-                wanted = polynomial(self.t - own[0], own[1:PATH])
+                since, *coefficients = (self.p[path + k] for k in range(PATH))
+                wanted = polynomial(self.t - since, coefficients)
+                path += PATH
             if kind.motion == "prescribed":
                 assert wanted is not None
                 value, rate, acceleration = wanted
@@ -119,7 +128,7 @@ class Symbols:
             if kind.motion == "free":
                 numbers["stiffness"] = 0.0
             if wanted is not None:
-                numbers = dict(zip(("stiffness", "damping"), own[PATH:], strict=False))
+                numbers = dict(zip(("stiffness", "damping"), own, strict=False))
             stops = own[-STOPS:] if kind.stopped else None
             found.append(_Joint(joint, at, moving, None, wanted, numbers, stops))
         return found
@@ -165,7 +174,7 @@ class Symbols:
             for what, value in j.numbers.items()
         }
         acting = spring_torques(self.model, self.position, self.rate, passive)
-        taped, follows = self._tape, self._outboard
+        follows, taped = self._outboard, iter(self._taped)
         found, place = [], 0
         for joint, kind in zip(self.joints, self.kinds, strict=True):
             for _ in joint.rate:
@@ -175,8 +184,7 @@ class Symbols:
                     value, rate, _ = joint.wanted
                     k, c = joint.numbers["stiffness"], joint.numbers["damping"]
                     load = by * (k * (value - joint.position[0]) + c * (rate - joint.rate[0]))
-                    if taped is not None:
-                        load = load + taped.torques[place]
+                    load = load + next(taped, 0.0)
                 if joint.stops is not None:
                     load = load + _stopped(joint)
                 found.append(load)
@@ -199,8 +207,6 @@ class Symbols:
             moving = [j for j in self.joints if j.acceleration is None]
             rates = [*rates, *alpha, *(x for j in moving for x in _coordinate_rates(j))]
             rates += [a for k, a in enumerate(joints) if k not in self._driven]
-        if self._tape is not None:
-            rates = [*rates, *self._tape.alpha]
         return ca.vertcat(*rates)
 
     @cached_property
@@ -219,49 +225,22 @@ class Symbols:
         )
         return ca.vertcat(*moment, *force, *torques)
 
-    # ------------------------------------------------------------------- the motor tape
-
-    @cached_property
-    def _paths(self) -> tuple[list[Any], list[Any], list[Any]]:
-        """Coordinates, speeds and accelerations of the nominal motion."""
-        q: list[Any] = []
-        u: list[Any] = []
-        a: list[Any] = []
-        for joint in self.joints:
-            if joint.wanted is None:
-                q, u = [*q, *joint.position], [*u, *joint.rate]
-                a += joint.acceleration or [0.0] * len(joint.rate)
-            else:
-                value, rate, acceleration = joint.wanted
-                q, u, a = [*q, value], [*u, rate], [*a, acceleration]
-        return q, u, a
-
     @cached_property
     def _outboard(self) -> list[Any]:
         """Inertia outboard of each joint speed in the paths' pose."""
         if not any(kind.following for kind in self.kinds):
             return []
-        return outboard_inertia(self.tree, place(self.tree, self._paths[0]))
+        q = [x for j in self.joints for x in (j.wanted[:1] if j.wanted else j.position)]
+        return outboard_inertia(self.tree, place(self.tree, q))
 
     @cached_property
-    def _tape(self) -> _Tape | None:
-        """The nominal flight's own motion, and the torques that it takes."""
+    def _taped(self) -> list[Any]:
+        """The motor tape's torque at each compliant joint."""
         if not self.tape:
-            return None
-        q, u, a = self._paths
-        own = tree(self.model)  # the tape was recorded with the body as it is, not as it is varied
-        omega = [self.y[self.moving + k] for k in range(RATE)]
-        alpha, acceleration, _ = forward_dynamics(
-            own, q, omega, u, [0.0] * len(u), [0.0] * 3, dict(enumerate(a))
-        )
-        _, _, torques = inverse_dynamics(own, q, omega, u, alpha, acceleration, a)
-        return _Tape(alpha, torques)
-
-
-@dataclass(frozen=True)
-class _Tape:
-    alpha: list[Any]
-    torques: list[Any]
+            return []
+        own = [self.p[k] for k in range(PATH * self.paths, self.changing)]
+        s = self.t - own[0]
+        return [polynomial(s, own[k : k + TAPED])[0] for k in range(1, len(own), TAPED)]
 
 
 def _stopped(joint: _Joint) -> Any:

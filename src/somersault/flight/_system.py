@@ -83,22 +83,21 @@ class System:
         slope = self._function("slope", s.slope)
         gauge = None if self.event is None else self._function("gauge", s.gauge)
         if self.extremes is None:
-            return Integrator(slope, gauge)
+            return Integrator(slope, gauge, changing=s.changing)
         return Integrator(
             slope,
             gauge,
             watch(self.extremes, self.quantities, self.state, self.parameters),
             self._function("longest", longest(s.quaternion, s.omega)),
+            s.changing,
         )
 
-    def start(self, quaternion: Array, omega: Array, q: Array, u: Array, tape: Any) -> Array:
+    def start(self, quaternion: Array, omega: Array, q: Array, u: Array) -> Array:
         """State vectors (N, state) from full joint coordinates and speeds."""
         q_keep, u_keep = self._kept()
         parts = [quaternion]
         if not self.symbols.bound:
             parts += [omega, q[:, q_keep], u[:, u_keep]]
-        if self.symbols.tape:
-            parts.append(np.tile(np.asarray(tape, float), (len(q), 1)))
         return np.concatenate(parts, 1)
 
     def _kept(self) -> tuple[list[int], list[int]]:
