@@ -65,7 +65,7 @@ class Case:
     @cached_property
     def states(self) -> np.ndarray:
         many = [s.many for s in self.starts]
-        rows = [self.system.start(m.quaternion, m.omega, m.q, m.u, None) for m in many]
+        rows = [self.system.start(m.quaternion, m.omega, m.q, m.u) for m in many]
         return np.concatenate(rows)
 
     @cached_property

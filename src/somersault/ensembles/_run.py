@@ -27,8 +27,9 @@ def on_threads(
         return
     most = threads or cores()
     side_by_side = min(most, len(chunks))
-    first = cut.flights(chunks[0])[0]
-    plan.fly(first, first + 1)  # compiles, before several threads would
+    if side_by_side > 1:  # what is compiled, before several threads would
+        first = cut.flights(chunks[0])[0]
+        plan.fly(first, first + 1)
 
     def fly(k: int) -> tuple[int, Mapping[str, Array]]:
         return k, flown(plan, cut, k, most // side_by_side)

@@ -39,12 +39,12 @@ def course(
         replace(plan, motion="prescribed", following=False, stops=()) if plan.on_path else plan
         for plan in plans
     )
-    alone = Takeoff(angular_velocity=tuple(float(x) for x in takeoff.tape))
-    length = _piece(chosen.model, nominal, alone.angular_velocity, duration)
+    omega = tuple(float(x) for x in takeoff.tape)
+    length, edges, torques = _nominal(chosen.model, nominal, omega, duration)
     values = {n: x for n, x in begun.values.items() if n[0] in ("times", "angles", "angle")}
-    alike = not any(isinstance(x, np.ndarray) for x in values.values())
-    count = 1 if alike else len(begun.q)
-    edges, torques = _recorded(chosen.model, nominal, alone, values, count, duration, length)
+    if any(isinstance(x, np.ndarray) for x in values.values()):
+        count = len(begun.q)
+        edges, torques = _recorded(chosen.model, nominal, omega, values, count, duration, length)
     played = [
         chosen.model.speed_slice(plan.joint.name).start
         for plan in plans
@@ -54,27 +54,28 @@ def course(
 
 
 @lru_cache(maxsize=64)
-def _piece(
+def _nominal(
     model: Model, plans: tuple[JointPlan, ...], omega: tuple[float, ...], duration: float
-) -> float:
-    """How long pieces may be: the same for all flights that differ from these in numbers."""
-    length, alone = _LONGEST, Takeoff(angular_velocity=omega)
-    while length > _SHORTEST:
-        _, torques = _recorded(model, plans, alone, {}, 1, duration, length)
+) -> tuple[float, Array, Array]:
+    """How long pieces may be, and what is recorded with them. Flights whose motions differ from
+    this one in numbers have pieces of the same length."""
+    length = _LONGEST
+    while True:
+        edges, torques = _recorded(model, plans, omega, {}, 1, duration, length)
         last = _combined(_TO_SERIES[-2:], torques)
-        if np.abs(last).max(initial=0.0) <= _LEFT_OUT * np.abs(torques).max(initial=0.0):
-            break
+        most = np.abs(torques).max(initial=0.0)
+        if np.abs(last).max(initial=0.0) <= _LEFT_OUT * most or length < _SHORTEST:
+            return length, edges, torques
         length /= 2
-    return length
 
 
 def _recorded(
-    model: Model, plans: tuple[JointPlan, ...], alone: Takeoff, values: Numbers, count: int,
-    duration: float, length: float,
+    model: Model, plans: tuple[JointPlan, ...], omega: tuple[float, ...], values: Numbers,
+    count: int, duration: float, length: float,
 ) -> tuple[Array, Array]:  # fmt: skip
     """Edges (count, P + 1) of pieces no longer than `length`, and the torques at their points,
     (count, P, points, joint speeds)."""
-    own = system(model, kinds(plans), None)
+    own, alone = system(model, kinds(plans), None), Takeoff(angular_velocity=omega)
     begun = starts(own, alone, plans, {**numbers(alone, plans), **values}, count)
     flight = Course(own, plans, begun, duration)
     edges = _divided(flight.knots, length)
