@@ -33,7 +33,7 @@ from somersault.model import Model
 SAMPLE = "sample"
 _MOST = 10**11  # flights
 _MOST_LISTED = 1_000
-_TOGETHER = 16_384  # flights whose numbers are held at once,
+_TOGETHER = 65_536  # flights whose numbers are held at once,
 _TOGETHER_BYTES = 2**26  # or as many as these hold
 _NAME = re.compile(r"\w[\w-]*")  # of an array in a store, and of a word in its attributes
 _ENGINES = ("somersault", "casadi", "llvmlite", "numpy", "scipy")
