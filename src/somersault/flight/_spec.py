@@ -88,7 +88,7 @@ def parse_spec(given: Mapping[str, Any], beside: Path) -> FlightSpec:
     duration = number("duration", given.get("duration", 1.0))
     setups = {name: JointTakeoff(**joint) for name, joint in joints.items()}
     if "motion" in given:
-        setups = {**moved(given["motion"], model, duration, beside), **setups}
+        setups = moved(given["motion"], model, duration, beside, setups)
     begun = Takeoff(**takeoff, joints=setups)
     if "compliance" in given:
         begun = softened(given["compliance"], model, begun)

@@ -170,11 +170,12 @@ def plans(model: Model, joints: Mapping[str, JointTakeoff]) -> tuple[JointPlan, 
 
     A left–right pair may be named once, by its common name; the right side is mirrored.
     """
-    given = _by_joint(model, joints)
+    given = by_joint(model, joints)
     return tuple(_plan(joint, given.get(joint.name, JointTakeoff())) for joint in model.joints)
 
 
-def _by_joint(model: Model, joints: Mapping[str, JointTakeoff]) -> dict[str, JointTakeoff]:
+def by_joint(model: Model, joints: Mapping[str, JointTakeoff]) -> dict[str, JointTakeoff]:
+    """Takeoffs by the joints' own names, pairs spelled out; SomersaultError as of `plans`."""
     pairs = named_pairs(model)
     given: dict[str, JointTakeoff] = {}
     for name, takeoff in joints.items():
