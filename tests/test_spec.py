@@ -189,6 +189,17 @@ def test_a_joint_of_the_spec_goes_before_its_recording(
         assert landed[joint] == pytest.approx(angle, abs=1e-5), joint
 
 
+def test_a_named_pose_and_what_there_is_instead(recording: Path) -> None:
+    text = RECORDED + "[compliance]\nnatural_frequency = 60\npose = "
+    (recording / "spec.toml").write_text(text + '"wrap"\n')
+    soft = read_spec(recording / "spec.toml").takeoff.joints["left_elbow"].stiffness
+    (recording / "spec.toml").write_text(text + '"wrapped"\n')
+    with pytest.raises(so.SomersaultError, match=r"'following', 'layout', .*'wrap'"):
+        read_spec(recording / "spec.toml")
+    (recording / "spec.toml").write_text(text + "{elbow = 2.1}\n")  # what it hinges on is outboard
+    assert read_spec(recording / "spec.toml").takeoff.joints["left_elbow"].stiffness == soft
+
+
 def test_a_pair_and_its_side_are_still_one_too_many(recording: Path) -> None:
     own = '[joints.elbow]\nmotion = "locked"\n[joints.left_elbow]\nmotion = "locked"\n'
     (recording / "spec.toml").write_text(RECORDED + own)

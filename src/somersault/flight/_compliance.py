@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
@@ -30,8 +29,11 @@ from somersault.flight._takeoff import (
     plans,
     require_takeoff,
 )
-from somersault.model import Model, load
+from somersault.model import Model, load, named_pose
+from somersault.model._athlete_poses import pose_names
 from somersault.model._pose import pose as posed
+
+_FOLLOWING = "following"
 
 
 def compliant(
@@ -40,7 +42,7 @@ def compliant(
     natural_frequency: float,
     damping_ratio: float = 0.7,
     *,
-    pose: Mapping[str, float] | float | Literal["following"],
+    pose: Mapping[str, float] | float | str,
     tape: bool = True,
     stop_stiffness: float = 0.0,
     stop_damping: float = 0.0,
@@ -48,9 +50,10 @@ def compliant(
     """The takeoff of a body that is compliant about the motion that `takeoff` prescribes.
 
     Every prescribed joint gets k = ω_n² I and c = 2 ζ ω_n I (ω_n in rad/s), I its outboard
-    inertia in a `pose`: angles by name, or the motion's own at a time in s, or "following" it as
-    it changes. With `tape` the joint torques of the nominal flight act besides: of exactly this
-    takeoff, prescribed. With a `stop_stiffness` (N m/rad) joints that have limits get stops there.
+    inertia in a `pose`: angles by name, an athlete's named pose ("wrap"), the motion's own at a
+    time in s, or "following" it as it changes. With `tape` the joint torques of the nominal flight
+    act besides: of exactly this takeoff, prescribed. With a `stop_stiffness` (N m/rad) joints that
+    have limits get stops there.
     The angular momentum is given in inertial axes, so that a change of
     attitude does not merely turn the whole flight. Raises SomersaultError where nothing is
     prescribed.
@@ -71,11 +74,7 @@ def compliant(
         )
     begun = start(system(model, kinds(joints), None), takeoff, joints)
     inertias = np.ones(len(model.speeds))
-    following = isinstance(pose, str)
-    if following and pose != "following":
-        raise SomersaultError(
-            f"pose {pose!r} is none; give joint angles by name, a time in s, or 'following'"
-        )
+    following = isinstance(pose, str) and pose == _FOLLOWING
     if not following:
         inertias = Equations(model).outboard_inertia(_pose(model, joints, pose))
     given = dict(_by_name(joints))
@@ -140,6 +139,15 @@ def _pose(
     model: Model, joints: tuple[JointPlan, ...], pose: Mapping[str, float] | float | str
 ) -> Array:
     """Joint coordinates (coordinates,) of a pose by name, or of the motion at a time."""
+    if isinstance(pose, str):
+        words = pose_names(model)
+        if pose not in words:
+            there = ", ".join(repr(word) for word in (_FOLLOWING, *words))
+            raise SomersaultError(
+                f"pose {pose!r} is none; give joint angles by name, a time in s, or a word of "
+                f"{there}"
+            )
+        return posed(model, named_pose(model, pose))
     if isinstance(pose, Mapping):
         for name, angle in pose.items():
             number(f"pose {name}", angle)

@@ -59,11 +59,11 @@ def softened(given: Mapping[str, Any], model: str, takeoff: Takeoff) -> Takeoff:
     if "natural_frequency" not in given or not isinstance(pose, str | int | float | Mapping):
         raise SomersaultError(
             "compliance needs natural_frequency (rad/s) and pose: a time of the motion (s), joint "
-            'angles by name, or "following"'
+            'angles by name, "following", or an athlete\'s named pose like "wrap"'
         )
     return compliant(
         model, takeoff, given["natural_frequency"], given.get("damping_ratio", 0.7),
-        pose=pose, tape=given.get("tape", True),  # type: ignore[arg-type]
+        pose=pose, tape=given.get("tape", True),
         stop_stiffness=given.get("stop_stiffness", 0.0),
         stop_damping=given.get("stop_damping", 0.0),
     )  # fmt: skip
