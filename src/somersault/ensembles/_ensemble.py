@@ -13,7 +13,7 @@ from somersault.ensembles import _run, _store
 from somersault.ensembles._plan import Plan, check
 from somersault.ensembles._report import Report
 from somersault.ensembles._vary import Vary
-from somersault.flight._fly import Event, check_ending, flight_time
+from somersault.flight._fly import STEPS, Event, check_ending, flight_time
 from somersault.flight._save import netcdf
 from somersault.flight._takeoff import Takeoff, require_takeoff
 from somersault.model import Model, load
@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-STEPS = 100_000  # of one flight's integration
-_MOST_STEPS = 10**9
+_MOST = 10**9  # chunks, threads or workers
 _CHUNK = 65_536  # flights
 _LEAST_CHUNK = 8_192
 _PARTS = 8  # that a small ensemble is cut into
@@ -129,7 +128,7 @@ def plan(
 ) -> Plan:  # fmt: skip
     """What `ensemble` would fly; SomersaultError for what does not fit."""
     duration = flight_time(duration)
-    check_ending(accuracy, until)
+    check_ending(accuracy, until, steps)
     takeoff = Takeoff() if takeoff is None else takeoff
     require_takeoff(takeoff)
     if not isinstance(report, Report):
@@ -139,11 +138,9 @@ def plan(
     if not isinstance(vary, Mapping | None) or not all(isinstance(n, str) for n in vary or {}):
         raise SomersaultError("vary must give a Vary by name: {'takeoff_tilt': so.Vary(...)}")
     told, varied = report, dict(vary or {})
-    for what, value in (("sample.size", size), ("sample.seed", seed), ("steps", steps)):
+    for what, value in (("sample.size", size), ("sample.seed", seed)):
         if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
             raise SomersaultError(f"{what} must be a whole number, and is {value!r}")
-    if not 1 <= steps <= _MOST_STEPS:
-        raise SomersaultError(f"steps must be a whole number from 1, and is {steps}")
     if size is None:
         listed = [
             len(v.samples) for v in varied.values() if isinstance(v, Vary) and v.samples is not None
@@ -151,7 +148,7 @@ def plan(
         size = listed[0] if listed else 1
     made = Plan(
         load(model), takeoff, duration, varied, told, size, seed, sequence,
-        float(accuracy), until, steps,
+        float(accuracy), until, int(steps),
     )  # fmt: skip
     check(made)
     return made
@@ -165,7 +162,7 @@ def carried_out(
     """Fly a plan, or what is left of it."""
     for what, value in (("chunk", chunk), ("threads", threads), ("workers", workers)):
         whole = isinstance(value, int) and not isinstance(value, bool)
-        if value is not None and not (whole and 1 <= value <= _MOST_STEPS):
+        if value is not None and not (whole and 1 <= value <= _MOST):
             raise SomersaultError(f"{what} must be a whole number, 1 to 1e9, and is {value!r}")
     if out is not None and not str(out):
         raise SomersaultError("out is empty; give the path of a Zarr store or of a .nc file")
