@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from somersault._errors import SomersaultError
+from somersault._given import whole_number
 from somersault.ensembles._plan import SAMPLE
-from somersault.ensembles._summary import reported
+from somersault.ensembles._summary import check_confidence, reported
 from somersault.ensembles._vary import DISTRIBUTIONS
 
 if TYPE_CHECKING:
@@ -30,11 +31,13 @@ def sensitivity(data: xr.Dataset, name: str, confidence: float = 0.95, seed: int
     """
     import xarray as xr
 
+    check_confidence(confidence)
+    seed = whole_number("seed", seed, 0, 2**32 - 1)
+    values = reported(data, name)
     specification = json.loads(data.attrs["specification"])
     inputs = [n for n, v in specification["vary"].items() if any(d in v for d in DISTRIBUTIONS)]
     if not inputs:
         raise SomersaultError("nothing is drawn in this ensemble, so nothing can be ranked")
-    values = reported(data, name)
     if SAMPLE not in values.dims or "history_time" in values.dims:
         raise SomersaultError(f"{name} has no single value for each sample to rank")
     if values.sizes[SAMPLE] < _FEWEST:
