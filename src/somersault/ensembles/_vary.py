@@ -13,6 +13,7 @@ from scipy import special
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._given import text
 from somersault.flight._numbers import number, numbers
 
 SEQUENCES = ("random", "sobol", "halton", "saltelli")
@@ -90,10 +91,7 @@ class Vary:
     @property
     def targets(self) -> tuple[str, ...]:
         """Names of the numbers that it sets or is added to."""
-        given = self.sets or self.adds_to
-        if isinstance(given, str):
-            return (given,)
-        return tuple(given) if isinstance(given, Sequence) else ()
+        return _names(self.sets) or _names(self.adds_to)
 
     @cached_property
     def grid(self) -> Array | None:
@@ -105,6 +103,12 @@ class Vary:
         assert self.distribution is not None
         given = [float(x) for x in getattr(self, self.distribution)]
         return DISTRIBUTIONS[self.distribution][1](u, *given)
+
+
+def _names(given: Any) -> tuple[Any, ...]:
+    if isinstance(given, str):
+        return (given,) if given else ()
+    return tuple(given) if isinstance(given, Sequence) else ()
 
 
 def _listed(values: Any) -> Array:
@@ -119,12 +123,13 @@ def check(name: str, vary: Vary) -> None:
     if not isinstance(vary, Vary):
         raise SomersaultError(f"{where} must be a somersault.Vary, and is {vary!r}")
     named = vary.targets and all(isinstance(t, str) for t in vary.targets)
-    if bool(vary.sets) == bool(vary.adds_to) or not named:
+    if bool(_names(vary.sets)) == bool(_names(vary.adds_to)) or not named:
         raise SomersaultError(
             f"{where} must have either sets or adds_to, with the names of numbers like "
             "'takeoff.tilt' or 'joints.shoulder.stiffness'"
         )
     number(f"{where}.scale", vary.scale)
+    text(f"{where}.unit", vary.unit)
     sources = [s for s in ("values", "samples", *DISTRIBUTIONS) if getattr(vary, s) is not None]
     if len(sources) != 1:
         said = " and ".join(sources) or "none"

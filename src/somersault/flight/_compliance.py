@@ -15,6 +15,7 @@ import numpy as np
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._given import truth
 from somersault.dynamics import Equations
 from somersault.flight._columns import rotation_vector
 from somersault.flight._numbers import number
@@ -60,8 +61,10 @@ def compliant(
     """
     model = load(model)
     joints = _joints(model, takeoff)
-    if not isinstance(tape, bool):
-        raise SomersaultError(f"tape must be true or false, and is {tape!r}")
+    truth("tape", tape)
+    for what, given in (("stop_stiffness", stop_stiffness), ("stop_damping", stop_damping)):
+        if number(what, given) < 0:
+            raise SomersaultError(f"{what} must not be negative, and is {given:g}")
     on_path = [plan for plan in joints if plan.motion == "prescribed"]
     if not on_path:
         raise SomersaultError("nothing is prescribed in this takeoff, so nothing can be compliant")
@@ -77,11 +80,11 @@ def compliant(
     following = isinstance(pose, str) and pose == _FOLLOWING
     if not following:
         inertias = Equations(model).outboard_inertia(_pose(model, joints, pose))
-    given = dict(_by_name(joints))
+    setups = dict(_by_name(joints))
     for plan in on_path:
         inertia = float(inertias[model.speed_slice(plan.joint.name).start])
         stopped = plan.joint.limits is not None
-        given[plan.joint.name] = JointTakeoff(
+        setups[plan.joint.name] = JointTakeoff(
             "compliant", times=plan.times, angles=plan.angles, path=plan.given,
             stiffness=omega_n**2 * inertia, damping=2 * zeta * omega_n * inertia,
             following=following, stop_stiffness=stop_stiffness if stopped else 0.0,
@@ -90,7 +93,7 @@ def compliant(
     return replace(
         _with_momentum(takeoff, begun.momentum),
         tape=tuple(begun.omega.tolist()) if tape else None,
-        joints=given,
+        joints=setups,
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._given import whole_number
 from somersault.attitude import angles_from_quaternion
 from somersault.dynamics._integrator import STATUS
 from somersault.flight._course import Course, solve
@@ -80,11 +81,9 @@ def check_ending(accuracy: float, until: str | None, steps: int) -> None:
     steps."""
     if not 1e-14 <= number("accuracy", accuracy) <= 1e-2:
         raise SomersaultError(f"accuracy {accuracy:g} rad is out of reach; give 1e-14 to 1e-2")
-    if until not in (None, "quarter twist"):
+    if until is not None and not (isinstance(until, str) and until == "quarter twist"):
         raise SomersaultError(f"until {until!r} is no event; use 'quarter twist'")
-    whole = isinstance(steps, int | np.integer) and not isinstance(steps, bool)
-    if not whole or not 1 <= steps <= _MOST_STEPS:
-        raise SomersaultError(f"steps must be a whole number from 1 to 1e9, and is {steps!r}")
+    whole_number("steps", steps, 1, _MOST_STEPS)
 
 
 def _times(duration: float, samples: int | Sequence[float] | Array | None) -> Array:

@@ -64,7 +64,7 @@ def named_pose(model: str | os.PathLike[str] | Model, name: str) -> dict[str, fl
 
     Raises SomersaultError for another name, or a model without those joints.
     """
-    if name not in tuple(_POSES):
+    if not isinstance(name, str) or name not in _POSES:
         raise SomersaultError(f"no pose is called {name!r}; the poses are {', '.join(_POSES)}")
     body = load(model)
     there = {pair.name for pair in mirror_pairs(body)}
