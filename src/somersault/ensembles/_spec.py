@@ -43,6 +43,8 @@ def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
     for key in _TABLES:
         if not isinstance(given.get(key, {}), Mapping):
             raise SomersaultError(f"{key} must be a table; write [{key}]")
+    if "vary" in given and not given["vary"]:
+        raise SomersaultError("vary is empty; say what varies, [vary.NAME], or leave it out")
     if "samples" in given:
         raise SomersaultError("samples is no key of an ensemble's SPEC; histories are in [report]")
     flight = parse_spec({k: v for k, v in given.items() if k not in _TABLES}, beside)

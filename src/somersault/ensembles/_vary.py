@@ -13,7 +13,7 @@ from scipy import special
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
-from somersault._given import text
+from somersault._given import text, whole_number
 from somersault.flight._numbers import number, numbers
 
 SEQUENCES = ("random", "sobol", "halton", "saltelli")
@@ -149,10 +149,10 @@ def _check_grid(where: str, values: Any) -> None:
     if isinstance(values, Mapping):
         if set(values) != {"from", "to", "count"}:
             raise SomersaultError(f"{where} must be a list, or have from, to and count")
-        for key in ("from", "to", "count"):
+        for key in ("from", "to"):
             number(f"{where}.{key}", values[key])
-        if not 1 <= values["count"] <= _MOST or values["count"] != int(values["count"]):
-            raise SomersaultError(f"{where}.count must be a whole number from 1 to ten million")
+        count = values["count"]
+        whole_number(f"{where}.count", int(count) if _is_whole(count) else count, 1, _MOST)
         if (values["count"] > 1) == (values["from"] == values["to"]):
             raise SomersaultError(
                 f"{where} goes from {values['from']} to {values['to']} in {values['count']} "
@@ -163,6 +163,11 @@ def _check_grid(where: str, values: Any) -> None:
         raise SomersaultError(f"{where} is empty; give at least one number")
     if len(np.unique(listed)) < len(listed):
         raise SomersaultError(f"{where} has the same number twice; leave one out")
+
+
+def _is_whole(count: Any) -> bool:
+    """Whether a float is meant as a whole number, as 1e3 is."""
+    return isinstance(count, float) and count.is_integer()
 
 
 def _row(where: str, given: Any) -> Array:
