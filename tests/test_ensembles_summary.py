@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import xarray as xr
 from scipy.stats import binomtest
 
 import somersault as so
+from somersault.cli import main
 from somersault.ensembles import (
     ENDINGS,
     _selection,
@@ -153,6 +155,7 @@ def test_first_order_indices_from_any_draws(sequence: str) -> None:
     found = sensitivity(ishigami(sequence, 4096), "y")
     assert found.input.values.tolist() == ["x2", "x1", "x3"]
     assert "total" not in found
+    assert found.first_order.attrs == {"units": "1", "long_name": "first-order Sobol' index"}
     for name in NAMES:
         np.testing.assert_allclose(found.first_order.sel(input=name), FIRST[name], atol=0.06)
 
@@ -260,3 +263,19 @@ def test_a_summary_holds_no_variable_whole(monkeypatch: pytest.MonkeyPatch) -> N
     share = fraction(within(data, 0.5), data["ended"], ["K", "sample"])
     for key in ("fraction", "low", "high"):
         assert whole["within_tolerance"][key] == float(share[key])
+
+
+@pytest.mark.parametrize(("sequence", "which"), [("saltelli", "total"), ("sobol", "first-order")])
+def test_the_command_says_which_indices_it_prints(
+    sequence: str, which: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "spec.toml").write_text(
+        'model = "furrer"\nduration = 0.2\n[takeoff]\nspin = 8.64\n'
+        '[vary.leant]\nadds_to = "takeoff.tilt"\nnormal = [0.0, 0.1]\n'
+        '[vary.turned]\nadds_to = "takeoff.twist"\nnormal = [0.0, 0.01]\n'
+        f'[sample]\nsize = 256\nsequence = "{sequence}"\n[report]\nquantities = ["tilt"]\n'
+    )
+    assert main(["ensemble", str(tmp_path / "spec.toml")]) == 0
+    assert f"  {which} Sobol' indices of tilt: leant 0." in capsys.readouterr().out
+    assert main(["ensemble", str(tmp_path / "spec.toml"), "--json"]) == 0
+    assert list(json.loads(capsys.readouterr().out)["sensitivity"]) == [f"tilt ({which})"]

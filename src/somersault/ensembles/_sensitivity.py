@@ -18,6 +18,12 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _FEWEST = 64
+_WORDS = {
+    "first_order": "first-order Sobol' index",
+    "first_order_confidence": "half-width of the first-order Sobol' index",
+    "total": "total Sobol' index",
+    "total_confidence": "half-width of the total Sobol' index",
+}
 
 
 def sensitivity(data: xr.Dataset, name: str, confidence: float = 0.95, seed: int = 0) -> xr.Dataset:
@@ -53,7 +59,11 @@ def sensitivity(data: xr.Dataset, name: str, confidence: float = 0.95, seed: int
     shape = [ordered.sizes[d] for d in lead]
     result = xr.Dataset(
         {
-            key: ((*lead, "input"), np.array([f[key] for f in found]).reshape(*shape, len(inputs)))
+            key: (
+                (*lead, "input"),
+                np.array([f[key] for f in found]).reshape(*shape, len(inputs)),
+                {"units": "1", "long_name": _WORDS[key]},
+            )
             for key in found[0]
         },
         {"input": inputs, **{d: data[d] for d in lead if d in data.coords}},
