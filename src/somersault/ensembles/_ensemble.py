@@ -178,6 +178,8 @@ def carried_out(
         cut = _store.resume(file, plan)  # which another program may have made meanwhile
     done = _store.finished(file, plan, cut)
     left = [k for k in range(len(cut)) if k not in done]
+    if left:
+        _store.note_processor(file)
 
     def put(k: int, rows: Mapping[str, Any]) -> None:
         _store.write(file, plan, cut, k, rows)
