@@ -144,7 +144,7 @@ def _claims(at: int) -> list[Claim]:
             "Thirty somersaults are ten times what the laboratory saw, not for ever. Would fail "
             "if energy alone did not keep them: if no spring of the range kept 99 % of launches "
             "for so long, if the range kept less than 80 % on average, or if a spring outside it "
-            "kept as many.",
+            "kept 80 %.",
         ),
         statement(
             "ch5-ceiling.scatter", "§4.3.3", "the number of stable somersaults is sensitive to the "
