@@ -160,6 +160,7 @@ def landings() -> so.Ensemble:
         ("confidence must be between 0 and 1", lambda e: e.sensitivity("tilt", confidence=2.0)),
         ("seed must be a whole number", lambda e: e.sensitivity("tilt", seed="lucky")),
         ("reports no", lambda e: e.plot(GIVEN)),
+        ("no landing_error", lambda e: so.ensembles.within(e.dataset[["tilt"]], 0.1)),
         ("an xarray.Dataset", lambda e: so.ensembles.within(SimpleNamespace(), 0.1)),
     ],
 )

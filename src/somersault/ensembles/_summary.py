@@ -33,7 +33,8 @@ def failed(ended: xr.DataArray) -> xr.DataArray:
 
 def within(data: xr.Dataset, tolerance: float | None) -> xr.DataArray:
     """Whether the landing error is at most so much, rad."""
-    return data[ERROR] <= _tolerance(data, tolerance)
+    most = _tolerance(data, tolerance)
+    return data[ERROR] <= most
 
 
 def _tolerance(data: xr.Dataset, tolerance: float | None) -> float:
