@@ -14,7 +14,7 @@ ROOMS = [
     "attitude", "rigid", "model", "dynamics", "stability", "flight", "view", "ensembles", "thesis",
     "cli",
 ]  # fmt: skip
-FOUNDATION = {"_errors", "_array", "_files"}
+FOUNDATION = {"_errors", "_array", "_files", "_given"}
 MOST_LINES = 420
 
 

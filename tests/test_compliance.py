@@ -62,8 +62,7 @@ def nominal() -> so.Flight:
 def test_the_tape_alone_flies_the_nominal_flight(
     nominal: so.Flight, natural_frequency: float, pose: Any
 ) -> None:
-    given = so.named_pose("gymnast", "wrap") if pose == "wrap" else pose
-    flight = fly(compliant(natural_frequency, pose=given))
+    flight = fly(compliant(natural_frequency, pose=pose))
     assert left_path(flight, nominal) < 1e-9
     assert apart(flight.landing.quaternion, nominal.landing.quaternion) < 1e-9
     assert flight.momentum_drift < 1e-9
@@ -172,6 +171,12 @@ def outboard(model: Model, angles: dict[str, float]) -> dict[str, float]:
     state = State(np.eye(4)[0], q, still, still[6:], np.zeros(3))
     mass = InMujoco(model, to_mujoco(model), state).mass_matrix
     return dict(zip([j.name for j in model.joints], np.diag(mass)[6:].tolist(), strict=True))
+
+
+@pytest.mark.parametrize("name", ["wrap", "pike"])
+def test_a_named_pose_is_that_of_athletes(name: str) -> None:
+    by_angles = compliant(pose=so.named_pose(GYMNAST, name))
+    assert compliant(pose=name).joints == by_angles.joints
 
 
 def assert_gains(begun: Takeoff, inertias: dict[str, float], omega_n: float, zeta: float) -> None:
@@ -295,6 +300,7 @@ def _soft(natural_frequency: Any = 20.0, zeta: Any = ZETA, pose: Any = 0.0, **mo
 
 
 SPRUNG = JointTakeoff("sprung", stiffness=2.0)
+ARM = Takeoff(spin=8.0, joints={"shoulder": JointTakeoff("prescribed", times=[0.0], angles=[1.0])})
 MISTAKES = [
     (lambda: _elbow(stiffness=None), "stiffness and damping"),
     (lambda: _elbow(damping=None), "stiffness and damping"),
@@ -325,7 +331,8 @@ MISTAKES = [
     (lambda: _soft(pose={"knee": 0.1}), "knee"),
     (lambda: _soft(pose={"elbow": 9.0}), "limits"),
     (lambda: _soft(pose={"elbow": np.nan}), "elbow"),
-    (lambda: _soft(pose="wrap"), "pose"),
+    (lambda: _soft(pose="wrapped"), "'following', 'layout', 'T'"),
+    (lambda: so.compliant("furrer", ARM, 20.0, pose="wrap"), "a word of 'following'"),
     (lambda: _soft(pose=None), "pose"),
     (lambda: _soft(pose=np.inf), "pose"),
     (lambda: _soft(pose=1e12), "pose"),

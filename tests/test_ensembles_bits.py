@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+import zarr
 
 import somersault as so
+from somersault.dynamics._kernel import processor
 from somersault.ensembles import _store
 from somersault.ensembles._ensemble import STEPS, carried_out, plan
 from somersault.ensembles._plan import Plan
@@ -180,6 +182,22 @@ def test_a_store_of_other_versions_is_not_gone_on_with(
     engines = layout(20).engines | {"numpy": "0.0.1"}
     monkeypatch.setattr(Plan, "engines", property(lambda self: engines))
     with pytest.raises(so.SomersaultError, match="begun with numpy"):
+        carried_out(layout(20), file)
+
+
+@pytest.mark.parametrize("begun", ["z80", None])
+def test_a_store_of_another_processor_is_gone_on_with_and_told_of(
+    tmp_path: Path, begun: str | None
+) -> None:
+    file = tmp_path / "a.zarr"
+    carried_out(layout(20), file)
+    group = zarr.open_group(str(file))
+    assert group.attrs["processor"] == processor()
+    left = {k: v for k, v in group.attrs.items() if k != "processor"}
+    group.attrs.put(left | ({"processor": begun} if begun else {}))
+    carried_out(layout(20), file)  # nothing is left to fly, and so nothing to tell
+    shutil.rmtree(file / "ended" / "c")
+    with pytest.warns(so.SomersaultWarning, match=begun or "did not record its processor"):
         carried_out(layout(20), file)
 
 

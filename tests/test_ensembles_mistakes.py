@@ -105,8 +105,10 @@ BAD: list[tuple[dict[str, str], tuple[str, ...]]] = [
     (vary("K", K + "values = {from = 1.0, to = 2.0, count = 0}"), ("vary.K.values.count",)),
     (vary("K", K + "values = {from = 1.0, to = 2.0, count = -3}"), ("vary.K.values.count",)),
     (vary("K", K + "values = {from = 1.0, to = 2.0, count = 2.5}"), ("vary.K.values.count",)),
-    (vary("K", K + "values = {from = 1.0, to = 2.0, count = 1000000000000}"),
-     ("vary.K.values.count",)),
+    *[(vary("K", f"{K}values = {{from = 1.0, to = 2.0, count = {count}}}"),
+       ("vary.K.values.count must be a whole number from 1 to 10000000, and is",))
+      for count in ("1000000000000", "1e12", "1e300", "2e7", "-1e3", '"ten"')],
+    ({"vary": "[vary]\n", "more": "", "sample": ""}, ("vary is empty", "[vary.NAME]")),
     (vary("K", f"{K}values = {GRID}\n[vary.t]\nsets = \"takeoff.twist\"\nvalues = {GRID}"),
      ("vary", "K 1000000", "t 1000000")),
     (vary("K", K + "values = [1.0, 2.0, 1.0]"), ("vary.K.values", "twice")),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +12,17 @@ import xarray as xr
 from scipy.stats import binomtest
 
 import somersault as so
-from somersault.ensembles import ENDINGS, failed, fraction, quantiles, sensitivity, within
+from somersault.cli import main
+from somersault.ensembles import (
+    ENDINGS,
+    _selection,
+    _summary,
+    failed,
+    fraction,
+    quantiles,
+    sensitivity,
+    within,
+)
 from somersault.ensembles._summary import summary
 from somersault.ensembles._vary import draws
 
@@ -144,6 +155,7 @@ def test_first_order_indices_from_any_draws(sequence: str) -> None:
     found = sensitivity(ishigami(sequence, 4096), "y")
     assert found.input.values.tolist() == ["x2", "x1", "x3"]
     assert "total" not in found
+    assert found.first_order.attrs == {"units": "1", "long_name": "first-order Sobol' index"}
     for name in NAMES:
         np.testing.assert_allclose(found.first_order.sel(input=name), FIRST[name], atol=0.06)
 
@@ -207,3 +219,63 @@ def test_pictures_over_two_grids_one_and_none() -> None:
     lost = dataset(np.full(3, np.nan), np.full(3, LOST), ("sample",))
     with pytest.raises(so.SomersaultError, match="all failed"):
         so.Ensemble(lost).plot()
+
+
+def rough(rng: np.random.Generator, size: int) -> dict[str, np.ndarray]:
+    """Numbers that are hard to tell apart, or far apart, or all alike."""
+    wide = rng.normal(size=size) * 10.0 ** rng.integers(-300, 300, size)
+    near = 1.0 + rng.integers(0, 5, size) * np.spacing(1.0)
+    holes = np.where(rng.random(size) < 0.3, np.nan, rng.normal(size=size))
+    return {
+        "normal": rng.normal(size=size), "wide": wide, "near": near, "holes": holes,
+        "zeros": np.where(rng.random(size) < 0.5, 0.0, -0.0), "one": np.full(size, -3.5),
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("few", [2, 100, 2**20])  # numbers that are sorted at once
+@pytest.mark.parametrize("size", [1, 2, 7, 5000])
+def test_quantiles_read_in_blocks_are_those_of_the_whole(
+    few: int, size: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(_selection, "_FEW", few)
+    levels = [0.0, 0.05, 0.5, 0.77, 0.95, 1.0]
+    for name, values in rough(np.random.default_rng(size), size).items():
+        kept = values[~np.isnan(values)]
+        if not kept.size:
+            continue
+        found = _selection.quantiles(lambda: np.array_split(values, 3), levels)  # noqa: B023
+        np.testing.assert_array_equal(found, np.quantile(kept, levels), err_msg=name)
+    assert np.isnan(_selection.quantiles(lambda: [np.full(3, np.nan)], levels)).all()
+
+
+def test_a_summary_holds_no_variable_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    rng = np.random.default_rng(2)
+    ended = rng.choice([0, 1, LOST, NOT_YET], (30, 40))
+    values = np.where(ended < 2, rng.normal(size=(30, 40)), np.nan)
+    data = dataset(values, ended, ("K", "sample"))
+    whole = summary(data, 0.5)
+    monkeypatch.setattr(_summary, "_BLOCK", 100)
+    longest = max(block.size for block in _summary._blocks(data["tilt"]))
+    assert longest <= 100
+    assert summary(data, 0.5) == whole
+    low, middle, high = np.nanquantile(values, [0.05, 0.5, 0.95])
+    assert list(whole["reported"]["tilt"].values()) == [low, middle, high, "rad"]
+    share = fraction(within(data, 0.5), data["ended"], ["K", "sample"])
+    for key in ("fraction", "low", "high"):
+        assert whole["within_tolerance"][key] == float(share[key])
+
+
+@pytest.mark.parametrize(("sequence", "which"), [("saltelli", "total"), ("sobol", "first-order")])
+def test_the_command_says_which_indices_it_prints(
+    sequence: str, which: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "spec.toml").write_text(
+        'model = "furrer"\nduration = 0.2\n[takeoff]\nspin = 8.64\n'
+        '[vary.leant]\nadds_to = "takeoff.tilt"\nnormal = [0.0, 0.1]\n'
+        '[vary.turned]\nadds_to = "takeoff.twist"\nnormal = [0.0, 0.01]\n'
+        f'[sample]\nsize = 256\nsequence = "{sequence}"\n[report]\nquantities = ["tilt"]\n'
+    )
+    assert main(["ensemble", str(tmp_path / "spec.toml")]) == 0
+    assert f"  {which} Sobol' indices of tilt: leant 0." in capsys.readouterr().out
+    assert main(["ensemble", str(tmp_path / "spec.toml"), "--json"]) == 0
+    assert list(json.loads(capsys.readouterr().out)["sensitivity"]) == [f"tilt ({which})"]

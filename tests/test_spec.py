@@ -147,3 +147,61 @@ def test_any_table_is_read_or_refused(given_: dict) -> None:
         parse_spec(given_, Path())
     except so.SomersaultError as mistake:
         assert "\n" not in str(mistake)
+
+
+RECORDED = """
+model = "gymnast"
+duration = 0.5
+[takeoff]
+spin = 5.0
+[motion]
+file = "arms.csv"
+"""
+
+
+@pytest.fixture
+def recording(tmp_path: Path) -> Path:
+    """A folder with a recording of both elbows, as a pair, and of one hip."""
+    times = np.linspace(0.0, 1.0, 101)
+    rows = [f"{t},{1 + 0.2 * t},{0.1 * t}" for t in times]
+    (tmp_path / "arms.csv").write_text("\n".join(["time,elbow,left_hip_flexion", *rows]))
+    return tmp_path
+
+
+@pytest.mark.parametrize("compliance", ["", "[compliance]\nnatural_frequency = 60\npose = 0.1\n"])
+@pytest.mark.parametrize(
+    ("name", "locked"),
+    [
+        ("right_elbow", {"right_elbow"}),
+        ("elbow", {"left_elbow", "right_elbow"}),
+        ("hip_flexion", {"left_hip_flexion", "right_hip_flexion"}),
+    ],
+)
+def test_a_joint_of_the_spec_goes_before_its_recording(
+    recording: Path, name: str, locked: set[str], compliance: str
+) -> None:
+    own = f'[joints.{name}]\nmotion = "locked"\nangle = 1.5\n'
+    (recording / "spec.toml").write_text(RECORDED + compliance + own)
+    spec = read_spec(recording / "spec.toml")
+    landed = so.fly(spec.model, spec.takeoff, spec.duration, accuracy=1e-6).landing.joints
+    moved = {"left_elbow": 1.1, "right_elbow": 1.1, "left_hip_flexion": 0.05}
+    for joint, angle in (moved | dict.fromkeys(locked, 1.5)).items():
+        assert landed[joint] == pytest.approx(angle, abs=1e-5), joint
+
+
+def test_a_named_pose_and_what_there_is_instead(recording: Path) -> None:
+    text = RECORDED + "[compliance]\nnatural_frequency = 60\npose = "
+    (recording / "spec.toml").write_text(text + '"wrap"\n')
+    soft = read_spec(recording / "spec.toml").takeoff.joints["left_elbow"].stiffness
+    (recording / "spec.toml").write_text(text + '"wrapped"\n')
+    with pytest.raises(so.SomersaultError, match=r"'following', 'layout', .*'wrap'"):
+        read_spec(recording / "spec.toml")
+    (recording / "spec.toml").write_text(text + "{elbow = 2.1}\n")  # what it hinges on is outboard
+    assert read_spec(recording / "spec.toml").takeoff.joints["left_elbow"].stiffness == soft
+
+
+def test_a_pair_and_its_side_are_still_one_too_many(recording: Path) -> None:
+    own = '[joints.elbow]\nmotion = "locked"\n[joints.left_elbow]\nmotion = "locked"\n'
+    (recording / "spec.toml").write_text(RECORDED + own)
+    with pytest.raises(so.SomersaultError, match="left_elbow is given twice"):
+        read_spec(recording / "spec.toml")

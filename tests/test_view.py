@@ -95,3 +95,16 @@ def test_page_counts_claims_and_marks_what_is_beyond_the_thesis():
     text = page([Section("x", "X", "says", "found", None, [], None, beyond=True)], [])
     assert "Beyond the thesis" in text
     assert "Every claim holds." in text
+
+
+def test_figures_of_a_flight_stay_clear_of_their_labels():
+    """A body that is piked at takeoff reaches further once it is straight."""
+    import somersault as so
+    from somersault.view._contact_sheet import contact_sheet
+
+    flight = so.hula(spin=11.0, hold=0.16, duration=1.0).fly(samples=51)
+    made = contact_sheet(flight, np.linspace(0, 1, 12), columns=6)
+    for ax in made.axes:
+        lowest = min(patch.get_path().vertices[:, 1].min() for patch in ax.patches)
+        assert len(ax.patches) > 50
+        assert lowest > max(words.get_position()[1] for words in ax.texts)

@@ -124,7 +124,10 @@ def _page(record: dict[str, Any]) -> list[str]:
         )
     for name, row in record.get("sensitivity", {}).items():
         known = [f"{who} {value:.2f}" for who, value in row.items() if value is not None]
-        lines.append(f"  variance of {name} from: {', '.join(known) or 'not determined'}")
+        quantity, which = name.removesuffix(")").rsplit(" (", 1)
+        lines.append(
+            f"  {which} Sobol' indices of {quantity}: {', '.join(known) or 'not determined'}"
+        )
     for key in ("dataset", "picture"):
         if key in record:
             lines.append(f"  {key}: {record[key]}")

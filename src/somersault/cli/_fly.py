@@ -29,12 +29,6 @@ A SPEC:
   hold = true                   # pretensioned to balance the nominal spin
 or, for all joints, [motion] file = "dive.csv" and [compliance]: see docs/flight.md"""
 
-_BROKEN = {
-    "too many steps": "it would take more than a million steps; it is too long for its accuracy, "
-    "or a spring or damper is too stiff",
-    "not finite": "its motion is no longer finite; a spring, damper or move is too stiff or fast",
-}
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
@@ -55,9 +49,9 @@ def run(chosen: argparse.Namespace) -> None:
         check_ending(chosen.out)
     spec = read_spec(chosen.spec)
     flight = fly(spec.model, spec.takeoff, spec.duration, **spec.options)
-    if flight.ended in _BROKEN:
+    if flight.ended in ("too many steps", "not finite"):
         raise SomersaultError(
-            f"the flight broke off at {flight.landing.time:g} s: {_BROKEN[flight.ended]}"
+            f"the flight broke off at {flight.landing.time:g} s: {_why_broken(flight)}"
         )
     if chosen.out is not None:
         flight.save(chosen.out)
@@ -65,6 +59,23 @@ def run(chosen: argparse.Namespace) -> None:
         print(json.dumps(_record(flight)))
     else:
         print("\n".join(_page(flight)))
+
+
+def _why_broken(flight: Flight) -> str:
+    from somersault.flight._lock import aligned
+
+    if flight.ended == "not finite":
+        return "its motion is no longer finite; a spring, damper or move is too stiff or fast"
+    given_up = f"it had taken {flight.steps} steps of the integration"
+    if joints := aligned(flight):
+        return (
+            f"{given_up}, and {' and '.join(joints)} have come into line there (gimbal lock), "
+            "which no step gets past; make them stiffer, or take the gains in another pose"
+        )
+    return (
+        f"{given_up}; a spring or damper is too stiff, or the accuracy too fine: make them "
+        "softer or coarser, or give more steps"
+    )
 
 
 def _record(flight: Flight) -> dict[str, Any]:

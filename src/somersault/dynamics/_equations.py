@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._given import name_list
 from somersault.dynamics import _composite, _springs
 from somersault.dynamics._articulated import forward_dynamics
 from somersault.dynamics._kernel import Kernel
@@ -73,7 +74,7 @@ class Equations:
 
     def __init__(self, model: str | Model, parameters: Sequence[str] = ()) -> None:
         self.model = model = load(model)
-        self.parameters = tuple(parameters)
+        self.parameters = name_list("parameters", parameters)
         known = [*parameter_names(model), *_springs.parameter_names(model)]
         for name in self.parameters:
             if name not in known:

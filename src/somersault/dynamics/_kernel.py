@@ -103,6 +103,7 @@ def aligned(shape: tuple[int, ...]) -> Array:
     return raw[start : start + count].reshape(shape)
 
 
+_ROUNDING = ("fma", "fma4", "avx2", "avx512f", "neon", "sve")  # as LLVM calls them
 _chosen: ContextVar[int | None] = ContextVar("threads", default=None)
 
 
@@ -136,6 +137,16 @@ def pool() -> ThreadPoolExecutor:
 @cache
 def _pool(count: int) -> ThreadPoolExecutor:
     return ThreadPoolExecutor(count, thread_name_prefix="somersault")
+
+
+@cache
+def processor() -> str:
+    """The kind of processor that code is compiled for here, with what decides how it rounds: which
+    multiply-adds are fused, and how wide vectors are."""
+    import llvmlite.binding as llvm
+
+    features = llvm.get_host_cpu_features()
+    return "+".join([llvm.get_host_cpu_name(), *(f for f in _ROUNDING if features.get(f))])
 
 
 def _target_machine():

@@ -13,6 +13,7 @@ import logging
 import signal
 import socket
 import threading
+import warnings
 from collections.abc import Iterator, Mapping
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
@@ -22,8 +23,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from somersault._array import Array
-from somersault._errors import SomersaultError
-from somersault.dynamics._kernel import cores
+from somersault._errors import SomersaultError, SomersaultWarning
+from somersault.dynamics._kernel import cores, processor
 from somersault.ensembles import _run, _store
 from somersault.ensembles._plan import Plan, engines
 from somersault.ensembles._store import Layout
@@ -136,6 +137,7 @@ def _carry(
     try:
         client.wait_for_workers(1, timeout=_WAIT_FOR_WORKERS)
         _check_engines(client, plan.engines)
+        _note_processors(client)
         shared = client.scatter(plan, broadcast=False, hash=False)
         path = None if file is None else str(file.resolve())
         for k in _flown(client, shared, cut, chunks, put, path, threads, plan.engines):
@@ -193,6 +195,19 @@ def _check_engines(client: Client, ours: dict[str, str]) -> None:
     """Refuse workers that would compute other last digits."""
     for address, theirs in client.run(engines).items():
         _compare(f"the worker {address}", theirs, ours)
+
+
+def _note_processors(client: Client) -> None:
+    """Warn of workers whose code may round otherwise than this program's."""
+    others = sorted(set(client.run(processor).values()) - {processor()})
+    if others:
+        warnings.warn(
+            f"there are workers on {', '.join(others)}, and this program is on {processor()}: the "
+            "last digits of a flight depend on who flies it; take workers of one kind if they "
+            "matter",
+            SomersaultWarning,
+            stacklevel=2,
+        )
 
 
 def _compare(who: str, theirs: dict[str, str], ours: dict[str, str]) -> None:

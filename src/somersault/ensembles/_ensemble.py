@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from somersault._errors import SomersaultError
 from somersault._files import write as write_file
+from somersault._given import by_name, instance, name_list, text, truth, whole_number
 from somersault.ensembles import _run, _store
-from somersault.ensembles._plan import Plan, check
+from somersault.ensembles._plan import MOST_FLIGHTS, MOST_SEED, Plan, check
 from somersault.ensembles._report import Report
 from somersault.ensembles._vary import Vary
-from somersault.flight._fly import Event, check_ending, flight_time
+from somersault.flight._fly import STEPS, Event, check_ending, flight_time
 from somersault.flight._save import netcdf
 from somersault.flight._takeoff import Takeoff, require_takeoff
 from somersault.model import Model, load
@@ -22,8 +23,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-STEPS = 100_000  # of one flight's integration
-_MOST_STEPS = 10**9
+_MOST = 10**9  # chunks, threads or workers
 _CHUNK = 65_536  # flights
 _LEAST_CHUNK = 8_192
 _PARTS = 8  # that a small ensemble is cut into
@@ -41,7 +41,7 @@ class Ensemble:
     def open(path: str | Path) -> Ensemble:
         """An ensemble that was written before, whole or in part: a Zarr store, whose values are
         read when used, or NetCDF."""
-        file = Path(path)
+        file = _path("path", path)
         if not file.exists():
             raise SomersaultError(f"there is no ensemble {str(path)!r}; check the path")
         return Ensemble(_store.opened(file))
@@ -129,29 +129,21 @@ def plan(
 ) -> Plan:  # fmt: skip
     """What `ensemble` would fly; SomersaultError for what does not fit."""
     duration = flight_time(duration)
-    check_ending(accuracy, until)
+    check_ending(accuracy, until, steps)
     takeoff = Takeoff() if takeoff is None else takeoff
     require_takeoff(takeoff)
     if not isinstance(report, Report):
-        if isinstance(report, str) or not isinstance(report, Iterable):
-            raise SomersaultError(f"report must be a Report or a list of names, and is {report!r}")
-        report = Report(tuple(report))
-    if not isinstance(vary, Mapping | None) or not all(isinstance(n, str) for n in vary or {}):
-        raise SomersaultError("vary must give a Vary by name: {'takeoff_tilt': so.Vary(...)}")
-    told, varied = report, dict(vary or {})
-    for what, value in (("sample.size", size), ("sample.seed", seed), ("steps", steps)):
-        if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
-            raise SomersaultError(f"{what} must be a whole number, and is {value!r}")
-    if not 1 <= steps <= _MOST_STEPS:
-        raise SomersaultError(f"steps must be a whole number from 1, and is {steps}")
+        report = Report(name_list("report, unless it is a Report,", report))
+    varied = {n: instance(f"vary.{n}", v, Vary) for n, v in by_name("vary", vary).items()}
+    seed = whole_number("sample.seed", seed, 0, MOST_SEED)
+    if size is not None:
+        size = whole_number("sample.size", size, 1, MOST_FLIGHTS)
     if size is None:
-        listed = [
-            len(v.samples) for v in varied.values() if isinstance(v, Vary) and v.samples is not None
-        ]
+        listed = [len(v.samples) for v in varied.values() if v.samples is not None]
         size = listed[0] if listed else 1
     made = Plan(
-        load(model), takeoff, duration, varied, told, size, seed, sequence,
-        float(accuracy), until, steps,
+        load(model), takeoff, duration, varied, report, size, seed, sequence,
+        float(accuracy), until, int(steps),
     )  # fmt: skip
     check(made)
     return made
@@ -164,15 +156,15 @@ def carried_out(
 ) -> Ensemble:  # fmt: skip
     """Fly a plan, or what is left of it."""
     for what, value in (("chunk", chunk), ("threads", threads), ("workers", workers)):
-        whole = isinstance(value, int) and not isinstance(value, bool)
-        if value is not None and not (whole and 1 <= value <= _MOST_STEPS):
-            raise SomersaultError(f"{what} must be a whole number, 1 to 1e9, and is {value!r}")
-    if out is not None and not str(out):
-        raise SomersaultError("out is empty; give the path of a Zarr store or of a .nc file")
+        if value is not None:
+            whole_number(what, value, 1, _MOST)
+    truth("progress", progress)
+    if scheduler is not None:
+        text("scheduler", scheduler)
+    file = None if out is None else _path("out", out)
     if workers is not None and scheduler is not None:
         raise SomersaultError("workers and scheduler are both given; give one of them")
     cut = _store.layout(plan.dims, chunk or _chunk(plan))
-    file = None if out is None else Path(out)
     if file is None or file.suffix.lower() == ".nc":
         return _in_memory(plan, cut, file, threads, workers, scheduler, progress)
     if file.exists():
@@ -186,6 +178,8 @@ def carried_out(
         cut = _store.resume(file, plan)  # which another program may have made meanwhile
     done = _store.finished(file, plan, cut)
     left = [k for k in range(len(cut)) if k not in done]
+    if left:
+        _store.note_processor(file)
 
     def put(k: int, rows: Mapping[str, Any]) -> None:
         _store.write(file, plan, cut, k, rows)
@@ -193,6 +187,14 @@ def carried_out(
     _fly(plan, cut, left, put, file, threads, workers, scheduler, progress)
     _store.tidy(file)
     return Ensemble(_store.opened(file))
+
+
+def _path(what: str, given: str | Path) -> Path:
+    if not isinstance(given, str | Path) or not str(given):
+        raise SomersaultError(
+            f"{what} must be the path of a Zarr store or of a .nc file, and is {given!r}"
+        )
+    return Path(given)
 
 
 def _fly(

@@ -10,6 +10,7 @@ import numpy as np
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._given import by_name, name_list, whole_number
 from somersault.dynamics import Kernel
 from somersault.dynamics._integrator import STATUS, Solution
 from somersault.flight._course import Course
@@ -45,6 +46,14 @@ class Report:
     samples: int = 0
     target: Mapping[str, float] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        for what in ("quantities", "extremes", "history"):
+            object.__setattr__(self, what, name_list(f"report.{what}", getattr(self, what)))
+        whole_number("report.samples", self.samples, 0, _MOST_SAMPLES)
+        object.__setattr__(self, "target", by_name("target", self.target))
+        for name, angle in self.target.items():
+            number(f"target.{name}", angle)
+
     @property
     def at_the_end(self) -> tuple[str, ...]:
         """Quantities that must be read from the last states: those told, and the target's."""
@@ -77,8 +86,6 @@ def check(report: Report, system: System) -> None:
                 )
         if len(set(names)) < len(tuple(names)):
             raise SomersaultError(f"{where} names the same thing twice; leave one out")
-    for name, angle in report.target.items():
-        number(f"target.{name}", angle)
     if ERROR in report.quantities and not report.target:
         raise SomersaultError("report.quantities has landing_error, which needs a target")
     if report.history and not 2 <= report.samples <= _MOST_SAMPLES:

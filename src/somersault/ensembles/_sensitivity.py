@@ -9,14 +9,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from somersault._errors import SomersaultError
+from somersault._given import whole_number
 from somersault.ensembles._plan import SAMPLE
-from somersault.ensembles._summary import reported
+from somersault.ensembles._summary import check_confidence, reported
 from somersault.ensembles._vary import DISTRIBUTIONS
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _FEWEST = 64
+_WORDS = {
+    "first_order": "first-order Sobol' index",
+    "first_order_confidence": "half-width of the first-order Sobol' index",
+    "total": "total Sobol' index",
+    "total_confidence": "half-width of the total Sobol' index",
+}
 
 
 def sensitivity(data: xr.Dataset, name: str, confidence: float = 0.95, seed: int = 0) -> xr.Dataset:
@@ -30,11 +37,13 @@ def sensitivity(data: xr.Dataset, name: str, confidence: float = 0.95, seed: int
     """
     import xarray as xr
 
+    check_confidence(confidence)
+    seed = whole_number("seed", seed, 0, 2**32 - 1)
+    values = reported(data, name)
     specification = json.loads(data.attrs["specification"])
     inputs = [n for n, v in specification["vary"].items() if any(d in v for d in DISTRIBUTIONS)]
     if not inputs:
         raise SomersaultError("nothing is drawn in this ensemble, so nothing can be ranked")
-    values = reported(data, name)
     if SAMPLE not in values.dims or "history_time" in values.dims:
         raise SomersaultError(f"{name} has no single value for each sample to rank")
     if values.sizes[SAMPLE] < _FEWEST:
@@ -50,7 +59,11 @@ def sensitivity(data: xr.Dataset, name: str, confidence: float = 0.95, seed: int
     shape = [ordered.sizes[d] for d in lead]
     result = xr.Dataset(
         {
-            key: ((*lead, "input"), np.array([f[key] for f in found]).reshape(*shape, len(inputs)))
+            key: (
+                (*lead, "input"),
+                np.array([f[key] for f in found]).reshape(*shape, len(inputs)),
+                {"units": "1", "long_name": _WORDS[key]},
+            )
             for key in found[0]
         },
         {"input": inputs, **{d: data[d] for d in lead if d in data.coords}},

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from somersault._errors import SomersaultError
-from somersault.ensembles._ensemble import STEPS, plan
+from somersault.ensembles._ensemble import plan
 from somersault.ensembles._plan import Plan
 from somersault.ensembles._report import Report
 from somersault.ensembles._vary import DISTRIBUTIONS, Vary
@@ -43,10 +43,11 @@ def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
     for key in _TABLES:
         if not isinstance(given.get(key, {}), Mapping):
             raise SomersaultError(f"{key} must be a table; write [{key}]")
+    if "vary" in given and not given["vary"]:
+        raise SomersaultError("vary is empty; say what varies, [vary.NAME], or leave it out")
     if "samples" in given:
         raise SomersaultError("samples is no key of an ensemble's SPEC; histories are in [report]")
-    flight = parse_spec({k: v for k, v in given.items() if k not in (*_TABLES, "steps")}, beside)
-    check_keys("", {k: v for k, v in given.items() if k == "steps"}, {"steps": WHOLE})
+    flight = parse_spec({k: v for k, v in given.items() if k not in _TABLES}, beside)
     sample, report, target = (dict(given.get(key, {})) for key in _TABLES[1:])
     check_keys("sample.", sample, _SAMPLE)
     check_keys("report.", report, _REPORT)
@@ -70,7 +71,7 @@ def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
         flight.model, flight.takeoff, flight.duration, vary,
         None if size is None else int(size), int(sample.get("seed", 0)),
         sample.get("sequence", "random"), told, accuracy, flight.options["until"],
-        int(given.get("steps", STEPS)),
+        flight.options["steps"],
     )  # fmt: skip
     return EnsembleSpec(planned, tolerance)
 

@@ -23,8 +23,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from somersault._array import Array
-from somersault._errors import SomersaultError
+from somersault._errors import SomersaultError, SomersaultWarning
 from somersault._files import umask
+from somersault.dynamics._kernel import processor
 from somersault.ensembles._plan import SAMPLE, Plan
 from somersault.ensembles._report import ENDINGS, Variable, variables
 
@@ -175,12 +176,14 @@ def _attributes(plan: Plan, cut: Layout) -> dict[str, Any]:
 
 
 def attributes(plan: Plan) -> dict[str, Any]:
-    """What a dataset says of itself: specification and versions, as JSON texts."""
+    """What a dataset says of itself: specification and versions, as JSON texts, and the kind of
+    processor it was begun on."""
     return {
         "format": _FORMAT,
         "model": plan.model.name,
         "specification": json.dumps(plan.specification),
         "versions": json.dumps(plan.engines),
+        "processor": processor(),
     }
 
 
@@ -202,6 +205,19 @@ def resume(path: Path, plan: Plan) -> Layout:
             "give another --out"
         )
     return Layout(plan.dims, tuple(attrs["chunk"]))
+
+
+def note_processor(path: Path) -> None:
+    """Warn where a store was begun on another kind of processor than this one."""
+    begun = _read_attributes(path).get("processor")
+    if begun != processor():
+        where = f"on {begun}" if begun else "by a version that did not record its processor"
+        warnings.warn(
+            f"{path} was begun {where}, and this is {processor()}: the last digits of what is "
+            "flown now may differ; go on there, or begin another, if they matter",
+            SomersaultWarning,
+            stacklevel=2,
+        )
 
 
 def _read_attributes(path: Path) -> dict[str, Any]:

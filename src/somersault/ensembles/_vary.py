@@ -14,6 +14,7 @@ from scipy import special
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._given import text, whole_number
 from somersault.flight._numbers import number, numbers
 
 SEQUENCES = ("random", "sobol", "halton", "saltelli")
@@ -91,10 +92,7 @@ class Vary:
     @property
     def targets(self) -> tuple[str, ...]:
         """Names of the numbers that it sets or is added to."""
-        given = self.sets or self.adds_to
-        if isinstance(given, str):
-            return (given,)
-        return tuple(given) if isinstance(given, Sequence) else ()
+        return _names(self.sets) or _names(self.adds_to)
 
     @cached_property
     def grid(self) -> Array | None:
@@ -106,6 +104,12 @@ class Vary:
         assert self.distribution is not None
         given = [float(x) for x in getattr(self, self.distribution)]
         return DISTRIBUTIONS[self.distribution][1](u, *given)
+
+
+def _names(given: Any) -> tuple[Any, ...]:
+    if isinstance(given, str):
+        return (given,) if given else ()
+    return tuple(given) if isinstance(given, Sequence) else ()
 
 
 def _listed(values: Any) -> Array:
@@ -120,12 +124,13 @@ def check(name: str, vary: Vary) -> None:
     if not isinstance(vary, Vary):
         raise SomersaultError(f"{where} must be a somersault.Vary, and is {vary!r}")
     named = vary.targets and all(isinstance(t, str) for t in vary.targets)
-    if bool(vary.sets) == bool(vary.adds_to) or not named:
+    if bool(_names(vary.sets)) == bool(_names(vary.adds_to)) or not named:
         raise SomersaultError(
             f"{where} must have either sets or adds_to, with the names of numbers like "
             "'takeoff.tilt' or 'joints.shoulder.stiffness'"
         )
     number(f"{where}.scale", vary.scale)
+    text(f"{where}.unit", vary.unit)
     sources = [s for s in ("values", "samples", *DISTRIBUTIONS) if getattr(vary, s) is not None]
     if len(sources) != 1:
         said = " and ".join(sources) or "none"
@@ -145,10 +150,10 @@ def _check_grid(where: str, values: Any) -> None:
     if isinstance(values, Mapping):
         if set(values) != {"from", "to", "count"}:
             raise SomersaultError(f"{where} must be a list, or have from, to and count")
-        for key in ("from", "to", "count"):
+        for key in ("from", "to"):
             number(f"{where}.{key}", values[key])
-        if not 1 <= values["count"] <= _MOST or values["count"] != int(values["count"]):
-            raise SomersaultError(f"{where}.count must be a whole number from 1 to ten million")
+        count = values["count"]
+        whole_number(f"{where}.count", int(count) if _is_whole(count) else count, 1, _MOST)
         if (values["count"] > 1) == (values["from"] == values["to"]):
             raise SomersaultError(
                 f"{where} goes from {values['from']} to {values['to']} in {values['count']} "
@@ -159,6 +164,11 @@ def _check_grid(where: str, values: Any) -> None:
         raise SomersaultError(f"{where} is empty; give at least one number")
     if len(np.unique(listed)) < len(listed):
         raise SomersaultError(f"{where} has the same number twice; leave one out")
+
+
+def _is_whole(count: Any) -> bool:
+    """Whether a float is meant as a whole number, as 1e3 is."""
+    return isinstance(count, float) and count.is_integer()
 
 
 def _row(where: str, given: Any) -> Array:

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._given import truth
 from somersault.dynamics import Equations
 from somersault.flight._columns import rotation_vector
 from somersault.flight._numbers import number
@@ -30,8 +30,11 @@ from somersault.flight._takeoff import (
     plans,
     require_takeoff,
 )
-from somersault.model import Model, load
+from somersault.model import Model, load, named_pose
+from somersault.model._athlete_poses import pose_names
 from somersault.model._pose import pose as posed
+
+_FOLLOWING = "following"
 
 
 def compliant(
@@ -40,7 +43,7 @@ def compliant(
     natural_frequency: float,
     damping_ratio: float = 0.7,
     *,
-    pose: Mapping[str, float] | float | Literal["following"],
+    pose: Mapping[str, float] | float | str,
     tape: bool = True,
     stop_stiffness: float = 0.0,
     stop_damping: float = 0.0,
@@ -48,17 +51,20 @@ def compliant(
     """The takeoff of a body that is compliant about the motion that `takeoff` prescribes.
 
     Every prescribed joint gets k = ω_n² I and c = 2 ζ ω_n I (ω_n in rad/s), I its outboard
-    inertia in a `pose`: angles by name, or the motion's own at a time in s, or "following" it as
-    it changes. With `tape` the joint torques of the nominal flight act besides: of exactly this
-    takeoff, prescribed. With a `stop_stiffness` (N m/rad) joints that have limits get stops there.
+    inertia in a `pose`: angles by name, an athlete's named pose ("wrap"), the motion's own at a
+    time in s, or "following" it as it changes. With `tape` the joint torques of the nominal flight
+    act besides: of exactly this takeoff, prescribed. With a `stop_stiffness` (N m/rad) joints that
+    have limits get stops there.
     The angular momentum is given in inertial axes, so that a change of
     attitude does not merely turn the whole flight. Raises SomersaultError where nothing is
     prescribed.
     """
     model = load(model)
     joints = _joints(model, takeoff)
-    if not isinstance(tape, bool):
-        raise SomersaultError(f"tape must be true or false, and is {tape!r}")
+    truth("tape", tape)
+    for what, given in (("stop_stiffness", stop_stiffness), ("stop_damping", stop_damping)):
+        if number(what, given) < 0:
+            raise SomersaultError(f"{what} must not be negative, and is {given:g}")
     on_path = [plan for plan in joints if plan.motion == "prescribed"]
     if not on_path:
         raise SomersaultError("nothing is prescribed in this takeoff, so nothing can be compliant")
@@ -71,18 +77,14 @@ def compliant(
         )
     begun = start(system(model, kinds(joints), None), takeoff, joints)
     inertias = np.ones(len(model.speeds))
-    following = isinstance(pose, str)
-    if following and pose != "following":
-        raise SomersaultError(
-            f"pose {pose!r} is none; give joint angles by name, a time in s, or 'following'"
-        )
+    following = isinstance(pose, str) and pose == _FOLLOWING
     if not following:
         inertias = Equations(model).outboard_inertia(_pose(model, joints, pose))
-    given = dict(_by_name(joints))
+    setups = dict(_by_name(joints))
     for plan in on_path:
         inertia = float(inertias[model.speed_slice(plan.joint.name).start])
         stopped = plan.joint.limits is not None
-        given[plan.joint.name] = JointTakeoff(
+        setups[plan.joint.name] = JointTakeoff(
             "compliant", times=plan.times, angles=plan.angles, path=plan.given,
             stiffness=omega_n**2 * inertia, damping=2 * zeta * omega_n * inertia,
             following=following, stop_stiffness=stop_stiffness if stopped else 0.0,
@@ -91,7 +93,7 @@ def compliant(
     return replace(
         _with_momentum(takeoff, begun.momentum),
         tape=tuple(begun.omega.tolist()) if tape else None,
-        joints=given,
+        joints=setups,
     )
 
 
@@ -140,6 +142,15 @@ def _pose(
     model: Model, joints: tuple[JointPlan, ...], pose: Mapping[str, float] | float | str
 ) -> Array:
     """Joint coordinates (coordinates,) of a pose by name, or of the motion at a time."""
+    if isinstance(pose, str):
+        words = pose_names(model)
+        if pose not in words:
+            there = ", ".join(repr(word) for word in (_FOLLOWING, *words))
+            raise SomersaultError(
+                f"pose {pose!r} is none; give joint angles by name, a time in s, or a word of "
+                f"{there}"
+            )
+        return posed(model, named_pose(model, pose))
     if isinstance(pose, Mapping):
         for name, angle in pose.items():
             number(f"pose {name}", angle)

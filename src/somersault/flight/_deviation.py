@@ -9,6 +9,7 @@ import numpy as np
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._given import by_name, instance
 from somersault.attitude import quaternion_from_matrix, quaternion_product
 from somersault.flight._flight import Flight
 from somersault.flight._fly import fly
@@ -43,18 +44,18 @@ def deviated_flight(
     are pretensioned to hold it; joints with neither spring nor damper are free. `options` are
     those of `fly`.
     """
-    model = spin.model
+    model = instance("spin", spin, Spin).model
     rate = number("rate", rate)
     if rate == 0:
         raise SomersaultError("rate 0 is no spin to deviate from; give one in rad/s")
     turns = {"tilt": tilt, "somersault": somersault, "twist": twist}
     deviation = np.array([number(name, turn) for name, turn in turns.items()])
-    springs = spread(model, stiffness or {}, mirrored=False)
-    dampers = spread(model, damping or {}, mirrored=False)
+    springs = spread(model, by_name("stiffness", stiffness), mirrored=False)
+    dampers = spread(model, by_name("damping", damping), mirrored=False)
     locked = {model.speeds[place] for place in locked_speeds(model, lock)}
     for name in (*springs, *dampers):
         model.joint(name)
-    moved = pose(model, {**_angles(spin), **_sums(spin, joints or {})})
+    moved = pose(model, {**_angles(spin), **_sums(spin, by_name("joints", joints))})
     setups = {
         joint.name: _setup(spin, joint, rate, moved, springs, dampers, locked)
         for joint in model.joints

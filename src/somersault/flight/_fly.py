@@ -10,6 +10,7 @@ import numpy as np
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._given import whole_number
 from somersault.attitude import angles_from_quaternion
 from somersault.dynamics._integrator import STATUS
 from somersault.flight._flight import Flight
@@ -22,6 +23,9 @@ from somersault.model import Model, load
 
 Event = Literal["quarter twist"]
 TOLERANCE_PER_ACCURACY = 1 / 20  # measured: eight somersaults add up about ten step errors
+STEPS = 100_000  # of one flight's integration
+_STEPS_A_POINT = 20  # more, for each point that samples or turns need
+_MOST_STEPS = 10**9
 _FINEST_TURN = 0.6  # rad between the points that turns are counted on
 _MOST_POINTS = 5_000_000
 _MOST_REFINEMENTS = 24
@@ -38,6 +42,7 @@ def fly(
     accuracy: float = 1e-9,
     samples: int | Sequence[float] | Array | None = None,
     until: Event | None = None,
+    steps: int = STEPS,
 ) -> Flight:
     """The free flight of a model from a takeoff, for `duration` seconds.
 
@@ -46,7 +51,10 @@ def fly(
     multiplies errors as it does all deviations. `samples` is how many evenly spaced times are
     kept, the ends included, or the times themselves; by default 100 a second. `until`
     "quarter twist" ends the flight when twist passes ±π/2 (body axis 2 at right angles to
-    inertial axis 2), found to rounding. Raises SomersaultError for anything that does not fit.
+    inertial axis 2), found to rounding. A flight that is not done after `steps` steps of the
+    integration, and twenty more for every sample and every 0.6 rad that it may turn, is given up,
+    `ended` by "too many steps": a joint in gimbal lock, or a spring too stiff. Raises
+    SomersaultError for anything that does not fit.
     """
     model = load(model)
     takeoff = Takeoff() if takeoff is None else takeoff
@@ -54,11 +62,11 @@ def fly(
     duration = flight_time(duration)
     times = _times(duration, samples)
     g = numbers("gravity", gravity, 3)
-    check_ending(accuracy, until)
+    check_ending(accuracy, until, steps)
     joints = plans(model, takeoff.joints)
     chosen = system(model, kinds(joints), until, tape=takeoff.tape is not None)
     begun = start(chosen, takeoff, joints)
-    return _flown(chosen, begun, takeoff, times, duration, g, accuracy)
+    return _flown(chosen, begun, takeoff, times, duration, g, accuracy, steps)
 
 
 def flight_time(duration: float) -> float:
@@ -68,12 +76,14 @@ def flight_time(duration: float) -> float:
     return float(duration)
 
 
-def check_ending(accuracy: float, until: str | None) -> None:
-    """SomersaultError unless a flight can be flown so accurately, until such an event."""
+def check_ending(accuracy: float, until: str | None, steps: int) -> None:
+    """SomersaultError unless a flight can be flown so accurately, until such an event, in so many
+    steps."""
     if not 1e-14 <= number("accuracy", accuracy) <= 1e-2:
         raise SomersaultError(f"accuracy {accuracy:g} rad is out of reach; give 1e-14 to 1e-2")
-    if until not in (None, "quarter twist"):
+    if until is not None and not (isinstance(until, str) and until == "quarter twist"):
         raise SomersaultError(f"until {until!r} is no event; use 'quarter twist'")
+    whole_number("steps", steps, 1, _MOST_STEPS)
 
 
 def _times(duration: float, samples: int | Sequence[float] | Array | None) -> Array:
@@ -97,6 +107,7 @@ def _flown(
     duration: float,
     gravity: Array,
     accuracy: float,
+    steps: int,
 ) -> Flight:
     """Solve on points that are close enough to count turns on, if need be again on closer ones."""
     many = begun.many
@@ -104,7 +115,10 @@ def _flown(
     first = chosen.start(many.quaternion, many.omega, many.q, many.u)
     points = _first_points(chosen, begun, np.union1d(times, [0.0, duration]))
     for _ in range(_MOST_REFINEMENTS):
-        solution = course.solve(first, points, accuracy * TOLERANCE_PER_ACCURACY)
+        solution = course.solve(
+            first, points, accuracy * TOLERANCE_PER_ACCURACY,
+            most_steps=steps + _STEPS_A_POINT * len(points),
+        )  # fmt: skip
         end, status = float(solution.end[0]), float(solution.status[0])
         flown = points < end
         states = np.concatenate([solution.states[0][flown], solution.final])

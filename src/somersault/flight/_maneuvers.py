@@ -18,6 +18,7 @@ import numpy as np
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._given import by_name, name_list, whole_number
 from somersault.dynamics import Equations
 from somersault.flight._flight import Flight
 from somersault.flight._fly import fly
@@ -30,6 +31,7 @@ from somersault.model._pose import pose as posed
 Keyframes = Mapping[str, Sequence[tuple[float, float]]]
 _SIDES = ("left", "right")
 _LEGS_APART = {"hip_abduction": math.pi / 4}
+_MOST_CYCLES = 1_000  # or twists
 _LONGEST = 20.0  # s: whatever has not twisted until then will not
 _FINE = 1e-13  # s
 
@@ -96,8 +98,10 @@ def inertia_change(
     first pose; the move begins at `begin` and takes `move` s. The angular momentum lies along
     inertial axis `axis`. Raises SomersaultError for another axis, and for poses that are none.
     """
-    if axis not in (2, 3):
+    if not isinstance(axis, int) or axis not in (2, 3):
         raise SomersaultError(f"axis is {axis!r}; give 2 for a somersault or 3 for a twist")
+    if len(name_list("poses", poses)) != 2:
+        raise SomersaultError(f"poses are two, from which to which, and are {poses!r}")
     body, (first, last) = load(model), (_sides(model, name) for name in poses)
     begin, move = _seconds(begin=begin), _seconds(move=move)
     h = number("spin", spin) * _inertia(body, first)[axis - 1, axis - 1] * np.eye(3)[axis - 1]
@@ -125,8 +129,7 @@ def cat_turn(
     depends on the path alone, not on the time it takes (Frohlich 1979). Raises SomersaultError for
     less than one cycle.
     """
-    if isinstance(cycles, bool) or not isinstance(cycles, int) or cycles < 1:
-        raise SomersaultError(f"cycles must be a whole number from 1, and is {cycles!r}")
+    whole_number("cycles", cycles, 1, _MOST_CYCLES)
     body, straight = load(model), _sides(model, "layout")
     apart = straight | _both(body, _LEGS_APART if legs is None else legs)
     out = straight | _both(body, {"shoulder_abduction": number("arms", arms)})
@@ -174,9 +177,9 @@ def arm_tilt(
     stations = [(begin, out), (begin + move, asymmetric)]
     start = Takeoff(spin=number("spin", spin))
     if twists is None:
-        return Maneuver(body, _through(stations), start, _seconds(duration=duration or 2.0))
-    if isinstance(twists, bool) or not isinstance(twists, int) or twists < 1:
-        raise SomersaultError(f"twists must be a whole number from 1, or None, and is {twists!r}")
+        longest = _seconds(duration=2.0 if duration is None else duration)
+        return Maneuver(body, _through(stations), start, longest)
+    whole_number("twists, unless it is None,", twists, 1, _MOST_CYCLES)
     middle = twist_time(Maneuver(body, _through(stations), start, begin + move), twists / 2)
     again = 2 * middle - begin - move
     stations += [(again, asymmetric), (again + move, out)]
@@ -307,9 +310,9 @@ def _both(model: Model, pose: Mapping[str, float]) -> dict[str, float]:
     """A pose with pairs that are named by what both sides share written out."""
     there = {joint.name for joint in model.joints}
     found = {}
-    for name, angle in pose.items():
-        names = [name] if name in there else [f"{side}_{name}" for side in _SIDES]
-        for joint in names:
+    for name, angle in by_name("legs", pose).items():
+        meant = [name] if name in there else [f"{side}_{name}" for side in _SIDES]
+        for joint in meant:
             model.joint(joint)
             found[joint] = number(f"joint {name}", angle)
     return found

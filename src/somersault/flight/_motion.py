@@ -16,6 +16,7 @@ import numpy as np
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._given import by_name, instance, text, truth
 from somersault.flight._numbers import MOST, number
 from somersault.flight._path import DEGREE, Path, check, increasing, moves, polynomial
 from somersault.flight._takeoff import LIMIT_SLACK, JointTakeoff
@@ -47,13 +48,18 @@ class Motion:
     slack: float = 0.0
 
     def __post_init__(self) -> None:
-        if not self.paths:
+        truth("held", self.held)
+        text("source", self.source)
+        check_slack(self.slack)
+        if not number("begin", self.begin) <= number("end", self.end):
+            raise SomersaultError(f"a motion from {self.begin:g} to {self.end:g} s ends too soon")
+        if not by_name("paths", self.paths):
             raise SomersaultError("a motion without joints moves nothing; name at least one joint")
         for name, path in self.paths.items():
-            _check_path(name, path)
+            _check_path(name, instance(f"joint {name}: path", path, Path))
         kept = {n: Path(_kept(p.knots), _kept(p.coefficients)) for n, p in self.paths.items()}
         object.__setattr__(self, "paths", kept)
-        object.__setattr__(self, "filtered", dict(self.filtered))
+        object.__setattr__(self, "filtered", by_name("filtered", self.filtered))
 
     @classmethod
     def moves(
@@ -184,7 +190,9 @@ class Motion:
         """
         self.check(model)
         if duration is not None:
-            self._covers(0.0, number("duration", duration))
+            if number("duration", duration) <= 0:
+                raise SomersaultError(f"duration {duration:g} s is none; give a positive number")
+            self._covers(0.0, duration)
         if self.held:
             return dict(self.paths)
         known = (self.begin, self.end)
@@ -246,6 +254,13 @@ def finite(what: str, values: Sequence[float] | Array) -> Array:
             f"{row[wrong[0]]:g}; correct it or leave it out"
         )
     return row
+
+
+def check_slack(slack: float) -> float:
+    """How far beyond its limits a joint may be; SomersaultError for what is negative."""
+    if number("slack", slack) < 0:
+        raise SomersaultError(f"slack must not be negative, and is {slack:g}")
+    return float(slack)
 
 
 def check_within(joint: Joint, values: Array, times: Array, slack: float) -> None:

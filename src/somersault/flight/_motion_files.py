@@ -21,6 +21,7 @@ import numpy as np
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._given import truth
 from somersault.flight._motion import Motion, nameable, spread
 from somersault.flight._motion_samples import MOST_SAMPLES, sampled_motion
 from somersault.model import Model, load
@@ -71,6 +72,9 @@ def read_motion(
         file = File(path)
     except TypeError:
         raise SomersaultError(f"{path!r} is no file of a motion; give its path") from None
+    truth("ignore_others", ignore_others)
+    if degrees is not None:
+        truth("degrees", degrees)
     try:
         table = _table(file)
         said = table.degrees if degrees is None else degrees
@@ -83,7 +87,7 @@ def read_motion(
             raise SomersaultError(
                 "its header does not say inDegrees=yes or no; say degrees=True or False"
             )
-        times, rows = _columns(table, model, names or {}, ignore_others, said)
+        times, rows = _columns(table, model, {} if names is None else names, ignore_others, said)
         return sampled_motion(model, times, rows, source=file.name, **options)
     except SomersaultError as mistake:
         raise SomersaultError(f"{file.name}: {mistake}") from None

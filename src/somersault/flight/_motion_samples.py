@@ -17,7 +17,8 @@ import numpy as np
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
-from somersault.flight._motion import Motion, check_within, finite, spread
+from somersault._given import by_name, text
+from somersault.flight._motion import Motion, check_slack, check_within, finite, spread
 from somersault.flight._numbers import number
 from somersault.flight._path import DEGREE, Path
 from somersault.model import Model, load
@@ -61,6 +62,7 @@ def sampled_motion(
     may be `slack` (rad, m) beyond the joints' limits. Raises SomersaultError for what is refused.
     """
     model = load(model)
+    text("source", source)
     at = _times(times, gap)
     first = float(at[0]) if start is None else number("start", start)
     last = float(at[-1]) if stop is None else number("stop", stop)
@@ -69,12 +71,12 @@ def sampled_motion(
             f"start {first:g} and stop {last:g} s are no part of samples from {at[0]:g} to "
             f"{at[-1]:g} s; choose a part of them"
         )
-    rows = {name: _row(name, row, at) for name, row in values.items()}
+    rows = {name: _row(name, row, at) for name, row in by_name("samples", values).items()}
     joints = spread(model, rows)
     if not joints:
         raise SomersaultError("samples of no joint make no motion; name at least one joint")
     raw = np.stack([c + k * rows[name] for name, k, c in joints.values()], 1)
-    slack = number("slack", slack)
+    slack = check_slack(slack)
     chosen = (at >= first) & (at <= last)
     for column, name in enumerate(joints):
         check_within(model.joint(name), raw[chosen, column], at[chosen], slack)

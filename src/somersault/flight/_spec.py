@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from somersault._errors import SomersaultError
+from somersault.flight._fly import STEPS
 from somersault.flight._numbers import number
 from somersault.flight._spec_keys import (
     EITHER,
@@ -26,8 +27,8 @@ from somersault.flight._takeoff import JointTakeoff, Takeoff
 _MOST_BYTES = 10 * 2**20
 _TOP = {
     "model": TEXT, "duration": NUMBER, "gravity": NUMBERS, "accuracy": NUMBER,
-    "samples": WHOLE, "until": TEXT, "takeoff": TABLE, "joints": TABLE, "motion": TABLE,
-    "compliance": TABLE,
+    "samples": WHOLE, "steps": WHOLE, "until": TEXT, "takeoff": TABLE, "joints": TABLE,
+    "motion": TABLE, "compliance": TABLE,
 }  # fmt: skip
 _TAKEOFF = {
     "somersault": NUMBER, "tilt": NUMBER, "twist": NUMBER, "quaternion": NUMBERS,
@@ -88,7 +89,7 @@ def parse_spec(given: Mapping[str, Any], beside: Path) -> FlightSpec:
     duration = number("duration", given.get("duration", 1.0))
     setups = {name: JointTakeoff(**joint) for name, joint in joints.items()}
     if "motion" in given:
-        setups = {**moved(given["motion"], model, duration, beside), **setups}
+        setups = moved(given["motion"], model, duration, beside, setups)
     begun = Takeoff(**takeoff, joints=setups)
     if "compliance" in given:
         begun = softened(given["compliance"], model, begun)
@@ -101,6 +102,7 @@ def parse_spec(given: Mapping[str, Any], beside: Path) -> FlightSpec:
             "accuracy": number("accuracy", given.get("accuracy", 1e-9)),
             "samples": None if samples is None else int(samples),
             "until": given.get("until"),
+            "steps": int(given.get("steps", STEPS)),
         },
     )
 

@@ -11,7 +11,7 @@ from somersault.flight._compliance import compliant
 from somersault.flight._motion import Motion
 from somersault.flight._motion_files import read_motion
 from somersault.flight._spec_keys import NUMBER, TABLE, TEXT, YES, check_keys
-from somersault.flight._takeoff import JointTakeoff, Takeoff
+from somersault.flight._takeoff import JointTakeoff, Takeoff, by_joint
 from somersault.model import load
 
 _MOTION = {
@@ -26,10 +26,12 @@ _COMPLIANCE = {"natural_frequency": NUMBER, "damping_ratio": NUMBER, "pose": "",
 
 
 def moved(
-    given: Mapping[str, Any], model: str, duration: float, beside: Path
-) -> dict[str, JointTakeoff]:
-    """The joints that a [motion] table prescribes: a recording, mirrored, scaled and delayed in
-    this order. The file is looked for beside the SPEC; `cutoff` = 0 filters nothing."""
+    given: Mapping[str, Any], model: str, duration: float, beside: Path,
+    joints: Mapping[str, JointTakeoff],
+) -> dict[str, JointTakeoff]:  # fmt: skip
+    """What every joint does that a [motion] table prescribes, or that [joints] names: `joints` go
+    before the recording, those of a pair singly or both. The recording is mirrored, scaled and
+    delayed in this order. The file is looked for beside the SPEC; `cutoff` = 0 filters nothing."""
     check_keys("motion.", given, _MOTION)
     if "file" not in given:
         raise SomersaultError("motion.file is missing; give a .csv, .mot or .sto file")
@@ -44,7 +46,7 @@ def moved(
         motion = motion.scaled(given["scaled"])
     if "delayed" in given:
         motion = motion.delayed(given["delayed"])
-    return motion.prescribed(body, duration)
+    return {**motion.prescribed(body, duration), **by_joint(body, joints)}
 
 
 def softened(given: Mapping[str, Any], model: str, takeoff: Takeoff) -> Takeoff:
@@ -57,11 +59,11 @@ def softened(given: Mapping[str, Any], model: str, takeoff: Takeoff) -> Takeoff:
     if "natural_frequency" not in given or not isinstance(pose, str | int | float | Mapping):
         raise SomersaultError(
             "compliance needs natural_frequency (rad/s) and pose: a time of the motion (s), joint "
-            'angles by name, or "following"'
+            'angles by name, "following", or an athlete\'s named pose like "wrap"'
         )
     return compliant(
         model, takeoff, given["natural_frequency"], given.get("damping_ratio", 0.7),
-        pose=pose, tape=given.get("tape", True),  # type: ignore[arg-type]
+        pose=pose, tape=given.get("tape", True),
         stop_stiffness=given.get("stop_stiffness", 0.0),
         stop_damping=given.get("stop_damping", 0.0),
     )  # fmt: skip

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._given import by_name, instance, whole_number
 from somersault.attitude import quaternion_from_matrix
 from somersault.dynamics import Equations
 from somersault.dynamics._composite import composites
@@ -32,6 +33,7 @@ from somersault.model._pose import pose, spread
 if TYPE_CHECKING:
     import xarray as xr
 
+_MOST_SAMPLES = 1_000_000
 GRAVITY = (0.0, 0.0, -9.81)  # m/s², inertial axes; 3 is up
 
 
@@ -48,6 +50,15 @@ class Stop:
     side: int = 1
     stiffness: float = 1e4
     damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        number("a stop's angle", self.angle)
+        if not isinstance(self.side, int | float | np.number) or self.side not in (1, -1):
+            raise SomersaultError(f"a stop's side is 1 or -1, and is {self.side!r}")
+        if number("a stop's stiffness", self.stiffness) <= 0:
+            raise SomersaultError(f"a stop's stiffness must be positive, and is {self.stiffness:g}")
+        if number("a stop's damping", self.damping) < 0:
+            raise SomersaultError(f"a stop's damping is not negative, and is {self.damping:g}")
 
     def torque(self, q: Any, u: Any) -> Any:
         """What it gives at a coordinate and its rate, N m; symbols or arrays."""
@@ -164,16 +175,18 @@ def swing(
     error relative to 1 + the size of the state. Raises SomersaultError for a free base, a ball
     joint, an unknown name, or anything that is no number.
     """
-    _check(model, stops or {})
-    duration = number("duration", duration)
-    if duration <= 0 or samples < 2:
-        raise SomersaultError("a swing needs a duration above 0 s and at least 2 samples")
+    props = {n: instance(f"stop {n}", s, Stop) for n, s in by_name("stops", stops).items()}
+    _check(instance("model", model, Model), props)
+    if number("duration", duration) <= 0:
+        raise SomersaultError(f"a swing needs a duration above 0 s, and {duration:g} is none")
+    if not 1e-14 <= number("accuracy", accuracy) <= 1e-2:
+        raise SomersaultError(f"accuracy {accuracy:g} is out of reach; give 1e-14 to 1e-2")
+    whole_number("samples", samples, 2, _MOST_SAMPLES)
     g = numbers("gravity", gravity, 3)
     q0 = pose(model, angles)
     u0 = np.zeros(len(model.speeds))
-    for name, rate in spread(model, rates or {}, mirrored=True).items():
-        u0[model.speed_slice(name)] = rate
-    props = dict(stops or {})
+    for name, rate in spread(model, by_name("rates", rates), mirrored=True).items():
+        u0[model.speed_slice(name)] = number(f"rate of {name}", np.asarray(rate)[()])
     solver = Integrator(_slope(model, g, props), None if until is None else _gauge(model, until))
     times = np.linspace(0.0, duration, samples)
     start = np.concatenate([q0, u0])[None]
@@ -196,6 +209,8 @@ def released(
     filled in); one that is not named keeps its spring and damper. Raises SomersaultError for a
     swing of another model.
     """
+    instance("what is released", found, Swing)
+    instance("mount", mount, Mount)
     if found.model != mount.held:
         raise SomersaultError(f"this is a swing of {found.model.name}, not of the mount given")
     q, u = found.q[-1], found.u[-1]
@@ -209,8 +224,9 @@ def released(
     still = np.concatenate([omega, velocity, own_rates])
     linear = free.momentum(own, still)[3:] / rider.mass
     centre = np.array(_moments(free)(own))[:, 0] / rider.mass + np.array(rider.bodies[0].com)
-    setups = dict(joints or {})
-    for name in setups:
+    setups = by_name("joints", joints)
+    for name, setup in setups.items():
+        instance(f"takeoff of joint {name}", setup, JointTakeoff)
         rider.joint(name)
     takeoffs = {
         joint.name: _let_go(joint, setups.get(joint.name), own[k], own_rates[k])
@@ -275,6 +291,8 @@ def _slope(model: Model, gravity: Array, stops: Mapping[str, Stop]) -> ca.Functi
 
 
 def _gauge(model: Model, until: tuple[str, float]) -> ca.Function:
+    if not isinstance(until, tuple | list) or len(until) != 2:
+        raise SomersaultError(f"until must be a joint and its angle, ('bar', 1.4), not {until!r}")
     joint, angle = until
     x = ca.SX.sym("x", 2 * len(model.joints) + 1)
     at = model.coordinate_slice(joint).start
@@ -300,10 +318,10 @@ def _moments(equations: Equations) -> ca.Function:
     if tree.free:
         return ca.Function("moments", [q], [ca.vertcat(*wholes[0].first)])
     total: list[Any] = [0.0] * 3
-    for at, whole in zip(placed, wholes, strict=True):
+    for at, body in zip(placed, wholes, strict=True):
         if at.link.parent < 0:
-            turned = at.turn.out(whole.first)
-            total = vadd(total, [add(turned[k], mul(whole.mass, at.position[k])) for k in range(3)])
+            turned = at.turn.out(body.first)
+            total = vadd(total, [add(turned[k], mul(body.mass, at.position[k])) for k in range(3)])
     return ca.Function("moments", [q], [ca.densify(ca.vertcat(*total))])
 
 

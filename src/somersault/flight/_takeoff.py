@@ -9,6 +9,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from somersault._errors import SomersaultError
+from somersault._given import by_name, instance
 from somersault.flight._numbers import MOST, number, numbers
 from somersault.flight._path import Path, check, moves, value
 from somersault.model import Joint, Model
@@ -80,9 +81,9 @@ class Takeoff:
     joints: Mapping[str, JointTakeoff] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "joints", by_name("takeoff joints", self.joints))
         for name, joint in self.joints.items():
-            if not isinstance(joint, JointTakeoff):
-                raise SomersaultError(f"takeoff of joint {name} is {joint!r}, not a JointTakeoff")
+            instance(f"takeoff of joint {name}", joint, JointTakeoff)
         for name in ("somersault", "tilt", "twist", "tilt_rate", "twist_rate"):
             number(f"takeoff {name}", getattr(self, name))
         for name, size in (
@@ -170,11 +171,12 @@ def plans(model: Model, joints: Mapping[str, JointTakeoff]) -> tuple[JointPlan, 
 
     A left–right pair may be named once, by its common name; the right side is mirrored.
     """
-    given = _by_joint(model, joints)
+    given = by_joint(model, joints)
     return tuple(_plan(joint, given.get(joint.name, JointTakeoff())) for joint in model.joints)
 
 
-def _by_joint(model: Model, joints: Mapping[str, JointTakeoff]) -> dict[str, JointTakeoff]:
+def by_joint(model: Model, joints: Mapping[str, JointTakeoff]) -> dict[str, JointTakeoff]:
+    """Takeoffs by the joints' own names, pairs spelled out; SomersaultError as of `plans`."""
     pairs = named_pairs(model)
     given: dict[str, JointTakeoff] = {}
     for name, takeoff in joints.items():
@@ -201,8 +203,8 @@ def _mirrored(takeoff: JointTakeoff, left: str, factor: float, offset: float) ->
         rate=factor * number(f"joint {left}: rate", takeoff.rate),
         rest=image(takeoff.rest),
         pretension=factor * number(f"joint {left}: pretension", takeoff.pretension),
-        angles=[image(angle) or 0.0 for angle in takeoff.angles],
-        path=None if takeoff.path is None else takeoff.path.image(factor, offset),
+        angles=[image(angle) or 0.0 for angle in numbers(f"joint {left}: angles", takeoff.angles)],
+        path=takeoff.path.image(factor, offset) if isinstance(takeoff.path, Path) else takeoff.path,
     )
 
 
@@ -288,7 +290,7 @@ def _motion(joint: Joint, given: JointTakeoff, where: str) -> Motion:
     if given.motion is None:
         sprung = joint.stiffness > 0 if given.stiffness is None else True
         return "sprung" if sprung else "locked"
-    if given.motion not in get_args(Motion):
+    if not isinstance(given.motion, str) or given.motion not in get_args(Motion):
         raise SomersaultError(
             f"{where}: {given.motion!r} is no motion; use {', '.join(get_args(Motion))}"
         )

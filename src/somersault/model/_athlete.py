@@ -13,7 +13,7 @@ from typing import Any, Literal
 import numpy as np
 
 from somersault._array import Array
-from somersault._errors import SomersaultError
+from somersault._given import one_of, text, truth
 from somersault.model._types import GROUND, IDENTITY, ZERO, Body, Joint, Matrix, Model, Vector
 
 Shoulders = Literal["hinges", "ball"]
@@ -97,10 +97,12 @@ class Physique:
 def athlete_model(name: str, physique: Physique, shoulders: str, knees: bool) -> Model:
     """The athlete with that physique, in the air.
 
-    Raises SomersaultError if `shoulders` is neither "hinges" nor "ball".
+    Raises SomersaultError if `shoulders` is neither "hinges" nor "ball", or `knees` no truth
+    value.
     """
-    if shoulders not in ("hinges", "ball"):
-        raise SomersaultError(f"shoulders is {shoulders!r}; give 'hinges' or 'ball'")
+    one_of("shoulders", shoulders, ("hinges", "ball"))
+    text("name", name)
+    knees = truth("knees", knees)
     bodies = [
         _body("pelvis", GROUND, physique.lower),
         _body(

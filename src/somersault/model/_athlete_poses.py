@@ -64,13 +64,12 @@ def named_pose(model: str | os.PathLike[str] | Model, name: str) -> dict[str, fl
 
     Raises SomersaultError for another name, or a model without those joints.
     """
-    if name not in tuple(_POSES):
+    if not isinstance(name, str) or name not in _POSES:
         raise SomersaultError(f"no pose is called {name!r}; the poses are {', '.join(_POSES)}")
     body = load(model)
     there = {pair.name for pair in mirror_pairs(body)}
     ball = there >= set(_BALL)
-    missing = [joint for joint in (*_REST, *(_BALL if ball else _HINGES)) if joint not in there]
-    if missing:
+    if missing := _missing(there):
         raise SomersaultError(
             f"{body.name} has no {missing[0]!r}, so it takes no named pose; use 'gymnast' or "
             "so.athlete"
@@ -80,6 +79,17 @@ def named_pose(model: str | os.PathLike[str] | Model, name: str) -> dict[str, fl
     pose = {joint: angles.get(joint, 0.0) for joint in (*_REST, *knee)}
     shoulder = {joint: angles.get(joint, 0.0) for joint in _HINGES}
     return pose | (_as_ball(*shoulder.values()) if ball else shoulder)
+
+
+def pose_names(model: Model) -> tuple[str, ...]:
+    """The named poses that a model takes: none, unless it has an athlete's joints."""
+    return () if _missing({pair.name for pair in mirror_pairs(model)}) else tuple(_POSES)
+
+
+def _missing(there: set[str]) -> list[str]:
+    """An athlete's joints that are not among these."""
+    shoulder = _BALL if there >= set(_BALL) else _HINGES
+    return [joint for joint in (*_REST, *shoulder) if joint not in there]
 
 
 def _as_ball(abduction: float, rotation: float, flexion: float) -> dict[str, float]:

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from somersault._errors import SomersaultError
+from somersault._given import one_of
 from somersault.model._athlete import HEAD, Part, Physique, Shoulders, athlete_model, joined
 from somersault.model._de_leva import (
     HEEL_BEHIND_ANKLE,
@@ -39,8 +40,7 @@ def athlete(
     Raises SomersaultError for a height outside 0.5 to 2.5 m, a mass outside 10 to 250 kg, or
     another sex or kind of shoulder than those named.
     """
-    if sex not in tuple(TABLES):
-        raise SomersaultError(f"sex is {sex!r}; the table has 'male' and 'female'")
+    one_of("sex", sex, TABLES)
     tall = _within("height", height, "m", 0.5, 2.5)
     heavy = _within("mass", mass, "kg", 10.0, 250.0)
     return athlete_model(name, _physique(TABLES[sex], tall, heavy), shoulders, knees)
@@ -48,8 +48,8 @@ def athlete(
 
 def _within(what: str, value: float, unit: str, least: float, most: float) -> float:
     try:
-        number = float(value)
-    except (TypeError, ValueError):
+        number = math.nan if isinstance(value, bool | np.bool_) else float(value)
+    except (TypeError, ValueError, OverflowError):
         number = math.nan
     if least <= number <= most:
         return number

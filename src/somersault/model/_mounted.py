@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
+from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._given import instance, shown
 from somersault.model._types import GROUND, IDENTITY, ZERO, Body, Matrix, Model, Vector
 from somersault.model._weld import as_matrix, as_vector, merge_welded
 
@@ -39,6 +42,8 @@ def mounted(
     The carrier's mass may be zero. Raises SomersaultError for a model whose base is not free,
     and for a carrier with a parent or without joints.
     """
+    instance("model", model, Model)
+    instance("carrier", carrier, Body)
     if not model.free:
         raise SomersaultError(
             f"{model.name} has a fixed base already; mount a model that is free in the air"
@@ -51,9 +56,21 @@ def mounted(
     fixed = replace(
         base,
         parent=0,
-        position=as_vector(np.asarray(position, float)),
-        rotation=as_matrix(np.asarray(rotation, float)),
+        position=as_vector(_numbers("position", position, (3,))),
+        rotation=as_matrix(_numbers("rotation", rotation, (3, 3))),
     )
     bodies = [carrier, fixed, *(replace(body, parent=body.parent + 1) for body in others)]
     held = Model(f"{model.name}, held", False, merge_welded(bodies, free=False), model.ignored)
     return Mount(model, held, fixed.position, fixed.rotation)
+
+
+def _numbers(what: str, given: Any, shape: tuple[int, ...]) -> Array:
+    """Finite numbers of a shape; SomersaultError naming `what`."""
+    try:
+        found = np.asarray(given, float)
+    except (TypeError, ValueError, OverflowError):
+        found = np.array(np.nan)
+    if found.shape != shape or not np.all(np.isfinite(found)):
+        wanted = " x ".join(map(str, shape))
+        raise SomersaultError(f"{what} must be {wanted} finite numbers, and is {shown(given)}")
+    return found

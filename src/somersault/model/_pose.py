@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._given import by_name
 from somersault.model._mirror import named_pairs, reflection
 from somersault.model._types import Joint, Model
 
@@ -23,7 +24,7 @@ def pose(model: Model, angles: Mapping[str, ArrayLike] | None) -> Array:
     """
     given = {
         name: _numbers(name, value)
-        for name, value in spread(model, angles or {}, mirrored=True).items()
+        for name, value in spread(model, by_name("pose", angles), mirrored=True).items()
     }
     shape = np.broadcast_shapes(*(value.shape for value in given.values()))
     q = np.broadcast_to(model.home, (*shape, len(model.home))).copy()
@@ -85,7 +86,7 @@ def spread(
     """
     pairs = named_pairs(model)
     result: dict[str, ArrayLike] = {}
-    for name, value in values.items():
+    for name, value in by_name("what joints get", values).items():
         if name in pairs and name not in model.speeds:
             pair = pairs[name]
             left, right = model.speeds[pair.left], model.speeds[pair.right]

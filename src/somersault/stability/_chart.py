@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._given import by_name, truth, whole_number
 from somersault.model import Model, load
 from somersault.model._pose import pose as posed
 from somersault.model._pose import spread
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 
 Values = Mapping[str, ArrayLike]
 _JOINT_KINDS = ("pose", "stiffness", "damping")
+_MOST_SAMPLES = 1_000_000
 _BODY_KINDS = ("mass", "com", "position", "inertia")
 
 
@@ -51,7 +53,7 @@ class _System:
         near = coupled(self.mass, self.rate, self.stiffness)
         groups = _gyric.blocks(_gyric.together(near, self.attitude))
         if subsystem is not None:
-            if subsystem not in self.names:
+            if not isinstance(subsystem, str) or subsystem not in self.names:
                 raise SomersaultError(
                     f"there is no coordinate {subsystem!r}; there are {', '.join(self.names)}"
                 )
@@ -176,6 +178,7 @@ def growth_rates(
     """
     model = load(model)
     require_free(model)
+    quantities = by_name("quantities", quantities)
     whole = _system(model, axis, quantities, lock)
     shape = np.broadcast_shapes(*(np.shape(v) for v in quantities.values()))
     rates = [
@@ -234,14 +237,16 @@ def chart(
     import xarray as xr
 
     model = load(model)
-    (x_name, x_values), (y_name, y_values) = _row(x), _row(y)
+    (x_name, x_values), (y_name, y_values) = _row("x of a chart", x), _row("y of a chart", y)
     if x_values.ndim != 1 or y_values.ndim != 1 or not x_values.size or not y_values.size:
         raise SomersaultError("a chart needs one row of values for each of x and y")
     if x_name == y_name:
         raise SomersaultError(f"a chart of {x_name} against itself shows nothing; vary two things")
-    if {x_name, y_name} & set(fixed or {}):
+    truth("energy", energy)
+    held = by_name("fixed", fixed)
+    if {x_name, y_name} & set(held):
         raise SomersaultError(f"{x_name} or {y_name} is varied and fixed at once; do one of them")
-    quantities = {**(fixed or {}), x_name: x_values[None, :], y_name: y_values[:, None]}
+    quantities = {**held, x_name: x_values[None, :], y_name: y_values[:, None]}
     rates = growth_rates(model, quantities, axis=axis, lock=lock, subsystem=subsystem)
     dims = (y_name, x_name)
     data: dict[str, Any] = {
@@ -261,13 +266,13 @@ def chart(
     )
 
 
-def _row(given: Any) -> tuple[str, Array]:
+def _row(what: str, given: Any) -> tuple[str, Array]:
     try:
         name, values = given
         return str(name), np.asarray(values, float)
     except (TypeError, ValueError):
         raise SomersaultError(
-            f"x and y of a chart are a name and values, ('pose.shoulder', [0, 1]), not {given!r}"
+            f"{what} is a name and values, ('pose.shoulder', [0, 1]), not {given!r}"
         ) from None
 
 
@@ -308,10 +313,10 @@ def root_locus(
 
     model = load(model)
     require_free(model)
-    name, values = along[0], np.asarray(along[1], float)
+    name, values = _row("what a root locus is along", along)
     if values.ndim != 1 or not values.size:
         raise SomersaultError("a root locus needs one row of values")
-    whole = _system(model, axis, {**(fixed or {}), name: values}, lock)
+    whole = _system(model, axis, {**by_name("fixed", fixed), name: values}, lock)
     found = [
         np.broadcast_to(r, (len(values), r.shape[-1]))
         for r in (
@@ -343,17 +348,20 @@ def stable_ranges(
     Looks at `samples` evenly spaced values, so an island narrower than their spacing can be
     missed, then halves each edge's bracket.
     """
-    name, low, high = along
-    if not low < high or samples < 2:
+    if not isinstance(along, tuple | list) or len(along) != 3:
         raise SomersaultError(
-            f"stable ranges of {name} need a lower and a higher value, and two samples or more"
+            "what stable ranges are along is a name, a lower and a higher value, "
+            f"('stiffness.shoulder', -2, 4), not {along!r}"
         )
+    name, (low, high) = _row("what stable ranges are along", (along[0], along[1:]))
+    if not low < high:
+        raise SomersaultError(f"stable ranges of {name} need a lower and a higher value")
+    whole_number("samples", samples, 2, _MOST_SAMPLES)
+    held = by_name("fixed", fixed)
     values = np.linspace(low, high, samples)
 
     def stable(at: Array) -> Array:
-        rates = growth_rates(
-            model, {**(fixed or {}), name: at}, axis=axis, lock=lock, subsystem=subsystem
-        )
+        rates = growth_rates(model, {**held, name: at}, axis=axis, lock=lock, subsystem=subsystem)
         return rates <= TOLERANCE
 
     inside = stable(values)

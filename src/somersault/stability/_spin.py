@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._given import by_name
 from somersault.dynamics import Equations, Kernel
 from somersault.model import Model
 from somersault.model._load import load
@@ -75,7 +76,8 @@ class Spin:
         """
         from somersault.stability._linear import linear
 
-        return linear(self, stiffness or {}, damping or {}, lock, rate)
+        springs, dampers = by_name("stiffness", stiffness), by_name("damping", damping)
+        return linear(self, springs, dampers, lock, rate)
 
     @property
     def inertia_ratios(self) -> dict[str, float]:

@@ -25,6 +25,7 @@ BARE, WEIGHTED = "doll", "doll_weighted"
 STRAIGHT = 1.57  # the nominal arm angle Γ of §§5.3 and 5.5, rad
 BEST = 0.82  # the K_sh that best stabilised the doll in the laboratory (§5.5)
 PRINTED_I_SH = 3.021e-4  # kg m² (§5.5, where its unit is misprinted)
+_COPIED = "A transcription: the model was made with this number."
 PRINTED_RL3 = 0.0572  # m, Table 5.1's weighted arm; 0.0622 by the table's own masses (errata)
 HEIGHT = 15 * 0.0254  # m, “fifteen inch tall” (§5.2.1)
 WEIGHT, WEIGHT_AT = 0.030, 0.043  # kg on each arm, and m from the shoulder (§5.2.1)
@@ -192,10 +193,10 @@ def table_5_1() -> Result:
     )
     claims, rows = [], []
     for name, (first, second, unit) in TABLE_5_1.items():
-        note = misprint if name == "rl3" else ""
+        note = misprint if name == "rl3" else _COPIED
         say = f"{name} of the shipped model"
         claims += [
-            number(f"table5-1.{name}", where, f"{say} doll", first, bare[name], unit, 0),
+            number(f"table5-1.{name}", where, f"{say} doll", first, bare[name], unit, 0, _COPIED),
             number(
                 f"table5-1.{name}-weighted",
                 where,
@@ -246,7 +247,10 @@ def table_5_1() -> Result:
     return Result(
         "Body parameters of the doll without arm weights and with 30 g on each arm, 0.043 m from "
         "the shoulder. All data of chapter 5 are for the second.",
-        "The shipped models doll and doll_weighted carry these numbers but one: rl3 = 0.0572 m of "
+        "Mostly a transcription: the shipped models doll and doll_weighted were made from this "
+        "table, so that each parameter's claim only says that it was copied without a slip. What "
+        "could fail are the sums at the end, of numbers printed elsewhere or of each other. The "
+        "models carry the table's numbers but one: rl3 = 0.0572 m of "
         f"the weighted arm contradicts the table's own masses, which give {centre:.4f} m.",
         tuple(claims),
         table=Table(header, tuple(rows)),

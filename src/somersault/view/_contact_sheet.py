@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from somersault.flight import Flight
+    from somersault.model import Model
 
 _VIEW = (35.0, 12.0)  # degrees: from the front, a little to the left and above
 
@@ -36,8 +37,10 @@ def contact_sheet(
     rows = -(-len(times) // columns)
     made = look.figure(1.15 * columns, 1.75 * rows + 0.3)
     grid = made.subplots(rows, 1, squeeze=False)[:, 0]
+    size = _size(flight, times)
     for row, ax in enumerate(grid):
-        strip(ax, flight, times[row * columns : (row + 1) * columns], columns, view)
+        shown = times[row * columns : (row + 1) * columns]
+        strip(ax, flight, shown, columns, view, size=size)
     if title:
         made.suptitle(title, fontsize=10)
     return made
@@ -50,14 +53,19 @@ def strip(
     columns: int | None = None,
     view: tuple[float, float] = _VIEW,
     words: bool = True,
+    size: float | None = None,
 ) -> None:
-    """One row of pictures of a flight on axes of their own."""
+    """One row of pictures of a flight on axes of their own.
+
+    `size` (m) is the room for each, from its centre of mass: as far as any of them reaches, if it
+    is not given.
+    """
     model = flight.system.model
     history = flight.dataset
-    size = _size(flight)
+    size = _size(flight, times) if size is None else size
     seen = parts.camera(*view)
     for place, moment in enumerate(times):
-        here = history.isel(time=int(np.argmin(np.abs(flight.times - moment))))
+        here = history.isel(time=_nearest(flight, moment))
         turn = matrix_from_quaternion(here["quaternion"].values)
         x = 1.7 * size * place
         parts.draw(ax, model, here["joint_angle"].values, turn, seen, (x, 0.0))
@@ -75,9 +83,18 @@ def strip(
     ax.axis("off")
 
 
-def _size(flight: Flight) -> float:
-    """How far the model reaches from its centre of mass at takeoff, m."""
-    model, q = flight.system.model, flight.start.q
+def _nearest(flight: Flight, moment: float) -> int:
+    """The sample nearest to a time."""
+    return int(np.argmin(np.abs(flight.times - moment)))
+
+
+def _size(flight: Flight, times: Sequence[float] | Array) -> float:
+    """How far the model reaches from its centre of mass at most in its poses at some times, m."""
+    angles = flight.dataset["joint_angle"].values
+    return max(_reach(flight.system.model, angles[_nearest(flight, t)]) for t in times)
+
+
+def _reach(model: Model, q: Array) -> float:
     rotations, origins = parts.places(model, q)
     centre = parts.centre_of_mass(model, q)
     return max(
