@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from importlib.resources import as_file, files
 from pathlib import Path
 
 from somersault._errors import SomersaultError, SomersaultWarning
+from somersault.attitude import as_axes
 from somersault.model._types import Model
 
 _SHIPPED = files("somersault.model") / "shipped"
@@ -20,13 +23,19 @@ def shipped() -> tuple[str, ...]:
     return tuple(sorted(f.name[:-4] for f in _SHIPPED.iterdir() if f.name.endswith(".xml")))
 
 
-def load(source: str | os.PathLike[str] | Model) -> Model:
+def load(source: str | os.PathLike[str] | Model, axes: Sequence[int] | None = None) -> Model:
     """A model, by the name of a shipped one or from an MJCF, URDF or bioMod file.
 
     The format follows the ending: .xml or .mjcf, .urdf, .bioMod. A `Model` is given back as
     it is. What a file holds that has no part in flight is left out with a SomersaultWarning;
     what would change a flight and cannot be carried raises SomersaultError.
+
+    `axes` are the body's axes about which it somersaults, tilts and twists: (2, 1, 3) unless
+    said otherwise, whatever the file; (1, 2, 3) for an acrobat of biorbd's with x to his right.
     """
+    if axes is not None:
+        axes = as_axes(axes)
+        return replace(load(source), axes=axes)
     if isinstance(source, Model):
         return source
     try:

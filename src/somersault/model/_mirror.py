@@ -38,13 +38,13 @@ class Pair:
 def mirror_pairs(model: Model) -> tuple[Pair, ...]:
     """The pairs of a model in the pose in which its file draws it; () if it has no symmetry.
 
-    The plane is the one across a base axis that mirrors the most joints, across axis 2 (left)
-    where that does not decide.
+    The plane is the one across a base axis that mirrors the most joints, across the axis of
+    somersault (left and right) where that does not decide.
     """
     drawn = _drawn(model)
     best: tuple[Pair, ...] = ()
-    for normal in (1, 0, 2):
-        pairs = _pairs(model, drawn, normal)
+    for axis in model.axes:
+        pairs = _pairs(model, drawn, axis - 1)
         if sum(p.left != p.right for p in pairs) > sum(p.left != p.right for p in best):
             best = pairs
     return best
