@@ -39,8 +39,9 @@ def as_axes(axes: Any) -> Axes:
     if not all(isinstance(k, int | np.integer) and not isinstance(k, bool) for k in given) or (
         given not in permutations((1, 2, 3))
     ):
+        shown = " ".join(repr(axes).split())[:60]
         raise SomersaultError(
-            f"axes {axes!r} are not those of somersault, tilt and twist; give 1, 2 and 3 in some "
+            f"axes {shown} are not those of somersault, tilt and twist; give 1, 2 and 3 in some "
             "order, like (2, 1, 3)"
         )
     a, b, c = (int(k) for k in given)

@@ -12,7 +12,7 @@ from somersault.flight._motion import Motion
 from somersault.flight._motion_files import read_motion
 from somersault.flight._spec_keys import NUMBER, TABLE, TEXT, YES, check_keys
 from somersault.flight._takeoff import JointTakeoff, Takeoff
-from somersault.model import load
+from somersault.model import Model, load
 
 _MOTION = {
     "file": TEXT, "names": TABLE, "ignore_others": YES, "degrees": YES, "cutoff": NUMBER,
@@ -26,7 +26,7 @@ _COMPLIANCE = {"natural_frequency": NUMBER, "damping_ratio": NUMBER, "pose": "",
 
 
 def moved(
-    given: Mapping[str, Any], model: str, duration: float, beside: Path
+    given: Mapping[str, Any], model: str | Model, duration: float, beside: Path
 ) -> dict[str, JointTakeoff]:
     """The joints that a [motion] table prescribes: a recording, mirrored, scaled and delayed in
     this order. The file is looked for beside the SPEC; `cutoff` = 0 filters nothing."""
@@ -47,7 +47,7 @@ def moved(
     return motion.prescribed(body, duration)
 
 
-def softened(given: Mapping[str, Any], model: str, takeoff: Takeoff) -> Takeoff:
+def softened(given: Mapping[str, Any], model: str | Model, takeoff: Takeoff) -> Takeoff:
     """The takeoff, compliant about what it prescribes as a [compliance] table says."""
     for key in given:
         if key == "pose":

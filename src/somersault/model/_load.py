@@ -33,9 +33,12 @@ def load(source: str | os.PathLike[str] | Model, axes: Sequence[int] | None = No
     `axes` are the body's axes about which it somersaults, tilts and twists: (2, 1, 3) unless
     said otherwise, whatever the file; (1, 2, 3) for an acrobat of biorbd's with x to his right.
     """
-    if axes is not None:
-        axes = as_axes(axes)
-        return replace(load(source), axes=axes)
+    wanted = None if axes is None else as_axes(axes)
+    model = _found(source)
+    return model if wanted is None else replace(model, axes=wanted)
+
+
+def _found(source: str | os.PathLike[str] | Model) -> Model:
     if isinstance(source, Model):
         return source
     try:
@@ -54,7 +57,7 @@ def load(source: str | os.PathLike[str] | Model, axes: Sequence[int] | None = No
         warnings.warn(
             f"{path.name}: left out, as they have no part in flight: {', '.join(model.ignored)}",
             SomersaultWarning,
-            stacklevel=2,
+            stacklevel=3,
         )
     return model
 

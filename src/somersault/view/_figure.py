@@ -162,7 +162,7 @@ def camera(azimuth: float, elevation: float, axes: BodyAxes = AXES) -> Array:
     eye = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
     right = np.array([-np.sin(a), np.cos(a), 0.0])
     seen = np.stack([right, np.cross(eye, right), eye])
-    return seen @ np.array(in_sequence(np.eye(3).tolist(), axes))
+    return seen @ np.array(in_sequence(list(np.eye(3)), axes))
 
 
 def draw(
