@@ -33,9 +33,7 @@ def wrapped(angle: Any) -> Any:
 
 @many
 @given(orders, turns, tilts, turns)
-def test_attitudes_are_scipys(
-    axes: Axes, somersault: float, tilt: float, twist: float
-) -> None:
+def test_attitudes_are_scipys(axes: Axes, somersault: float, tilt: float, twist: float) -> None:
     angles = [somersault, tilt, twist]
     ours = attitude.quaternion_from_angles(*angles, axes)
     theirs = Rotation.from_euler(scipys(axes), angles)
@@ -111,7 +109,7 @@ def test_what_are_no_axes(axes: Any) -> None:
     with pytest.raises(so.SomersaultError, match=r"^axes .*give 1, 2 and 3 in some order"):
         attitude.as_axes(axes)
     if axes is not None:
-        with pytest.raises(so.SomersaultError, match="^axes "):
+        with pytest.raises(so.SomersaultError, match="axes "):
             so.load("furrer", axes)
 
 

@@ -17,7 +17,7 @@ NUMBER, NUMBERS, TEXT, TEXTS, YES, TABLE = (
 )
 WHOLE = "a whole number"
 EITHER = "a number, or three for a ball"
-BODY_AXES = "the body's axes of somersault, tilt and twist: 1, 2, 3 in some order, like [2, 1, 3]"
+BODY_AXES = "1, 2 and 3 in some order (the body's axes of somersault, tilt and twist)"
 _MOST_SHOWN = 200  # characters of a mistaken value
 
 
