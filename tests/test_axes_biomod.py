@@ -155,6 +155,14 @@ def test_axes_in_a_spec(file: Path, capsys: pytest.CaptureFixture) -> None:
         assert float(made[name][1]) == pytest.approx(found[name], abs=1e-5)
 
 
+def test_the_example_twists_twice(capsys: pytest.CaptureFixture) -> None:
+    spec = Path(__file__).parents[1] / "examples" / "acrobat.toml"
+    assert main(["fly", str(spec), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["final"]
+    assert found["somersault"] > 2 * np.pi
+    assert found["twist"] == pytest.approx(4 * np.pi, abs=0.3)
+
+
 def test_axes_tell_specifications_apart() -> None:
     given = {"model": "furrer", "takeoff": {"spin": 8.0}}
     plans = [
