@@ -51,7 +51,7 @@ def as_axes(axes: Any) -> Axes:
 def side(axes: Axes) -> int:
     """1 where the axis of somersault is at the left of the axes of tilt (front) and twist (head),
     −1 where it is at the right."""
-    return 1 if axes in _RIGHT_HANDED else -1
+    return 1 if tuple(axes) in _RIGHT_HANDED else -1
 
 
 def in_sequence(vector: Sequence[Any], axes: Axes) -> list[Any]:
