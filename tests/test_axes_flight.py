@@ -14,6 +14,7 @@ from trees import random_tree, unit
 
 import somersault as so
 from somersault.attitude import Axes, matrix_from_quaternion
+from somersault.model._mirror import mirror_pairs
 from somersault.model._weld import as_matrix, as_vector
 from somersault.view import _figure as parts
 from somersault.view._contact_sheet import contact_sheet
@@ -306,3 +307,29 @@ def test_a_contact_sheet_is_the_same_picture(axes: Axes) -> None:
         for sheet in made
     ]
     np.testing.assert_allclose(boxes[1], boxes[0], rtol=0, atol=1e-8)
+
+
+@every_order
+def test_a_shipped_model_of_other_axes_looks_the_same(axes: Axes) -> None:
+    drawn, other = (parts.solids(so.load("furrer", axes=order)) for order in ((2, 1, 3), axes))
+    for one, same in zip(drawn, other, strict=True):
+        assert (one.body, one.radius) == (same.body, same.radius)
+        np.testing.assert_array_equal(one.points, same.points)
+
+
+@every_order
+def test_left_and_right_are_along_the_axis_of_somersault(axes: Axes) -> None:
+    """Of four arms crosswise, which are mirror images of each other across two planes."""
+    box = as_matrix(np.diag([3.0, 2.0, 1.0]))
+    trunk = so.Body("trunk", -1, 10.0, (0.0, 0.0, 0.0), box)
+    arms = tuple(
+        so.Body(
+            f"arm{x}{y}", 0, 1.0, (0.2 * x, 0.3 * y, 0.0), as_matrix(np.eye(3)),
+            joints=(so.Joint(f"arm{x}{y}", "hinge", (0.0, 0.0, 1.0)),),
+        )
+        for x in (1, -1) for y in (1, -1)
+    )  # fmt: skip
+    model = so.Model("cross", True, (trunk, *arms))
+    pairs = mirror_pairs(redrawn(model, axes))
+    assert [(pair.left, pair.right) for pair in pairs] == [(0, 1), (2, 3)]  # 1 is at our axis 2
+    assert pairs == mirror_pairs(model)

@@ -14,6 +14,7 @@ from functools import lru_cache
 import numpy as np
 
 from somersault._array import Array
+from somersault.attitude import from_sequence
 from somersault.model._types import GROUND, Joint, Model
 
 _CLOSE = 1e-6  # of the body's own size
@@ -178,26 +179,28 @@ def _speed_pairs(
     signs = _sign(drawn[index], drawn[other], joint, image, mirror)
     assert signs is not None
     first, second = joint, image
-    if index != other and _is_right(joint, image, drawn[index], drawn[other], normal):
+    left = np.zeros(3)
+    left[normal] = from_sequence((1, 1, 1), model.axes)[normal]
+    if index != other and _is_right(joint, image, drawn[index], drawn[other], left):
         first, second = image, joint
-    left, right = model.speed_slice(first.name), model.speed_slice(second.name)
+    one, two = model.speed_slice(first.name), model.speed_slice(second.name)
     name = common_name(first.name, second.name)
     return [
         Pair(
             name if joint.kind != "ball" else f"{name}.{k + 1}",
-            left.start + k,
-            right.start + k,
+            one.start + k,
+            two.start + k,
             int(sign),
         )
         for k, sign in enumerate(signs)
     ]
 
 
-def _is_right(joint: Joint, image: Joint, a: _Drawn, b: _Drawn, normal: int) -> bool:
+def _is_right(joint: Joint, image: Joint, a: _Drawn, b: _Drawn, left: Array) -> bool:
     for this, that, answer in ((joint, image, True), (image, joint, False)):
         if _side(this.name) == "right" or _side(that.name) == "left":
             return answer
-    return bool(a.com[normal] < b.com[normal])
+    return bool(a.com @ left < b.com @ left)
 
 
 _SIDE = re.compile(
