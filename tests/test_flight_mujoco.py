@@ -337,8 +337,17 @@ def quintic(times: np.ndarray, angles: np.ndarray) -> PPoly:
     )
 
 
-def by_momentum(model: Model, flight: Flight, paths: dict[str, PPoly], seconds: float) -> Any:
-    """Attitude at the end, and the angular velocity, from h kept and MuJoCo's mass matrix."""
+def by_momentum(
+    model: Model,
+    flight: Flight,
+    paths: dict[str, PPoly],
+    seconds: float,
+    since: tuple[float, np.ndarray] | None = None,
+) -> Any:
+    """Attitude at the end, and the angular velocity, from h kept and MuJoCo's mass matrix.
+
+    From takeoff on, or from a time and the attitude then.
+    """
     m = to_mujoco(model)
     slopes = {name: path.derivative() for name, path in paths.items()}
     names = [joint.name for joint in model.joints]
@@ -359,8 +368,8 @@ def by_momentum(model: Model, flight: Flight, paths: dict[str, PPoly], seconds: 
     def rate(t: float, quaternion: np.ndarray) -> np.ndarray:
         return 0.5 * quaternion_product(quaternion, np.concatenate([[0.0], omega(t, quaternion)]))
 
-    knots = sorted({float(t) for p in paths.values() for t in p.x if 0 < t < seconds})
-    state, begun = flight.start.quaternion, 0.0
+    begun, state = (0.0, flight.start.quaternion) if since is None else since
+    knots = sorted({float(t) for p in paths.values() for t in p.x if begun < t < seconds})
     for until in [*knots, seconds]:  # the path's third derivative jumps at its knots
         found = solve_ivp(rate, (begun, until), state, method="DOP853", rtol=1e-11, atol=1e-12)
         state, begun = found.y[:, -1], until

@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from test_axes_flight import redrawn, retold, sign
 
 import somersault as so
-from somersault.attitude import angle_rates
+from somersault.attitude import Axes, angle_rates
 from somersault.cli import main
 
 ARM = so.JointTakeoff(motion="sprung", angle=1.4, rate=0.1, stiffness=34.48, hold=True)
@@ -38,7 +39,8 @@ def test_a_pair_by_its_common_name_is_mirrored() -> None:
     ],
 )
 @pytest.mark.parametrize("samples", [2, 601])
-def test_turns_by_the_singularity(angles: tuple, omega: tuple, samples: int) -> None:
+@pytest.mark.parametrize("axes", [(2, 1, 3), (3, 2, 1)])
+def test_turns_by_the_singularity(angles: tuple, omega: tuple, samples: int, axes: Axes) -> None:
     """Angles integrated as angles (eq. 2.3), past cos \u0398 of 1e-4, tell the turns."""
     inertia = np.diag(np.array(so.load("book").bodies[0].inertia))
 
@@ -47,9 +49,10 @@ def test_turns_by_the_singularity(angles: tuple, omega: tuple, samples: int) -> 
         return np.concatenate([angle_rates(y[:3], y[3:]), turning])
 
     wanted = solve_ivp(slope, (0, 6), [*angles, *omega], "DOP853", rtol=1e-11, atol=1e-12).y[:3, -1]
-    takeoff = so.Takeoff(*angles, angular_velocity=omega)
-    end = so.fly("book", takeoff, 6.0, samples=samples).landing
-    np.testing.assert_allclose([end.somersault, end.tilt, end.twist], wanted, rtol=0, atol=1e-5)
+    takeoff = retold(so.Takeoff(*angles, angular_velocity=omega), axes)
+    end = so.fly(redrawn(so.load("book"), axes), takeoff, 6.0, samples=samples).landing
+    found = [sign(axes) * end.somersault, end.tilt, end.twist]
+    np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-5)
 
 
 def test_the_turns_of_a_takeoff_are_kept() -> None:

@@ -5,11 +5,20 @@ axis, then tilt Θ about the carried 1 axis, then twist Ψ about the body's 3 ax
 takes inertial components to body components. Quaternions are scalar first and turn body
 components into inertial ones, so `matrix_from_quaternion(q)` is `C_bi` transposed.
 
+A body drawn otherwise somersaults, tilts and twists about other axes (a, b, c) of its own: its
+attitude is R_a(Φ) R_b(Θ) R_c(Ψ). Renaming axes is all that this takes (`in_sequence`): whoever
+tilts about his front and twists about his head has a at his left or, with the sense of Φ turned
+round, at his right.
+
 Angles are in radians, in the order (Φ, Θ, Ψ). Everything works on stacks: the last axis (the
 last two of matrices) holds the components, those before it are carried along.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import permutations
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +26,50 @@ from numpy.typing import ArrayLike
 from somersault._array import Array
 from somersault._errors import SomersaultError
 
+Axes = tuple[int, int, int]
+
+AXES: Axes = (2, 1, 3)
 SINGULAR = 1e-15  # cos Θ below which somersault and twist are told apart by convention
+_RIGHT_HANDED = ((2, 1, 3), (1, 3, 2), (3, 2, 1))  # as tilt, somersault, twist: 1, 2, 3 in turn
+
+
+def as_axes(axes: Any) -> Axes:
+    """Axes of somersault, tilt and twist; SomersaultError unless they are 1, 2, 3 in some order."""
+    given = tuple(axes) if isinstance(axes, Sequence | np.ndarray) else ()
+    if not all(isinstance(k, int | np.integer) and not isinstance(k, bool) for k in given) or (
+        given not in permutations((1, 2, 3))
+    ):
+        shown = " ".join(repr(axes).split())[:60]
+        raise SomersaultError(
+            f"axes {shown} are not those of somersault, tilt and twist; give 1, 2 and 3 in some "
+            "order, like (2, 1, 3)"
+        )
+    a, b, c = (int(k) for k in given)
+    return a, b, c
+
+
+def side(axes: Axes) -> int:
+    """1 where the axis of somersault is at the left of the axes of tilt (front) and twist (head),
+    −1 where it is at the right."""
+    return 1 if tuple(axes) in _RIGHT_HANDED else -1
+
+
+def in_sequence(vector: Sequence[Any], axes: Axes) -> list[Any]:
+    """A vector's three components along front, left and head, where 2-1-3 has its axes 1, 2, 3.
+
+    Numbers, arrays or symbols. Attitudes renamed so (the vector part of a quaternion) have Θ and
+    Ψ of the sequence about `axes`, and `side` times its Φ.
+    """
+    a, b, c = axes
+    return [vector[b - 1], side(axes) * vector[a - 1], vector[c - 1]]
+
+
+def from_sequence(vector: Sequence[Any], axes: Axes) -> list[Any]:
+    """The inverse of `in_sequence`: a vector's three components in the body's own axes."""
+    a, b, c = axes
+    found: list[Any] = [None] * 3
+    found[b - 1], found[a - 1], found[c - 1] = vector[0], side(axes) * vector[1], vector[2]
+    return found
 
 
 def direction_cosines(somersault: ArrayLike, tilt: ArrayLike, twist: ArrayLike) -> Array:
@@ -82,29 +134,29 @@ def quaternion_conjugate(quaternion: ArrayLike) -> Array:
     return np.asarray(quaternion, float) * [1.0, -1.0, -1.0, -1.0]
 
 
-def quaternion_from_angles(somersault: ArrayLike, tilt: ArrayLike, twist: ArrayLike) -> Array:
-    """Unit quaternions (…, 4) from angles (…) in rad; continuous in the angles."""
-    halves = np.broadcast_arrays(*(0.5 * np.asarray(x, float) for x in (somersault, tilt, twist)))
+def quaternion_from_angles(
+    somersault: ArrayLike, tilt: ArrayLike, twist: ArrayLike, axes: Axes = AXES
+) -> Array:
+    """Unit quaternions (…, 4) from angles (…) in rad about `axes`; continuous in the angles."""
+    turned = side(axes) * np.asarray(somersault, float)
+    halves = np.broadcast_arrays(*(0.5 * np.asarray(x, float) for x in (turned, tilt, twist)))
     (sf, cf), (st, ct), (sp, cp) = ((np.sin(x), np.cos(x)) for x in halves)
-    return np.stack(
-        [
-            cf * ct * cp + sf * st * sp,
-            cf * st * cp + sf * ct * sp,
-            sf * ct * cp - cf * st * sp,
-            cf * ct * sp - sf * st * cp,
-        ],
-        -1,
-    )
+    vector = [
+        cf * st * cp + sf * ct * sp,
+        sf * ct * cp - cf * st * sp,
+        cf * ct * sp - sf * st * cp,
+    ]
+    return np.stack([cf * ct * cp + sf * st * sp, *from_sequence(vector, axes)], -1)
 
 
-def angles_from_quaternion(quaternion: ArrayLike) -> Array:
+def angles_from_quaternion(quaternion: ArrayLike, axes: Axes = AXES) -> Array:
     """(Φ, Θ, Ψ) (…, 3) of quaternions (…, 4): Θ in [−π/2, π/2], Φ and Ψ in [−π, π].
 
-    The angles always give the attitude back to rounding. At Θ = ±π/2 only Φ ∓ Ψ is an
-    attitude: there the twist is 0 and the somersault has it all.
+    The angles always give the attitude back to rounding. At Θ = ±π/2 only the sum or the
+    difference of Φ and Ψ is an attitude: there the twist is 0 and the somersault has it all.
     """
-    half_sum, half_difference, tilt, _ = _halves(np.asarray(quaternion, float))
-    return _from_halves(half_sum, half_difference, tilt)
+    half_sum, half_difference, tilt, _ = _halves(np.asarray(quaternion, float), axes)
+    return _signed(_from_halves(half_sum, half_difference, tilt), axes)
 
 
 def angles_from_matrix(cosines: ArrayLike) -> Array:
@@ -113,35 +165,35 @@ def angles_from_matrix(cosines: ArrayLike) -> Array:
     return angles_from_quaternion(quaternion_from_matrix(np.swapaxes(c, -1, -2)))
 
 
-def body_rates(angles: ArrayLike, rates: ArrayLike) -> Array:
+def body_rates(angles: ArrayLike, rates: ArrayLike, axes: Axes = AXES) -> Array:
     """ω (…, 3), rad/s in body axes, from (Φ, Θ, Ψ) and their rates (…, 3): eq. 2.4."""
     _, tilt, twist = np.moveaxis(np.asarray(angles, float), -1, 0)
     somersaulting, tilting, twisting = np.moveaxis(np.asarray(rates, float), -1, 0)
+    somersaulting = side(axes) * somersaulting
     across = np.cos(tilt) * somersaulting
-    return np.stack(
-        [
-            np.cos(twist) * tilting + np.sin(twist) * across,
-            -np.sin(twist) * tilting + np.cos(twist) * across,
-            twisting - np.sin(tilt) * somersaulting,
-        ],
-        -1,
-    )
+    omega = [
+        np.cos(twist) * tilting + np.sin(twist) * across,
+        -np.sin(twist) * tilting + np.cos(twist) * across,
+        twisting - np.sin(tilt) * somersaulting,
+    ]
+    return np.stack(from_sequence(omega, axes), -1)
 
 
-def angle_rates(angles: ArrayLike, omega: ArrayLike) -> Array:
+def angle_rates(angles: ArrayLike, omega: ArrayLike, axes: Axes = AXES) -> Array:
     """(Φ̇, Θ̇, Ψ̇) (…, 3), rad/s, from (Φ, Θ, Ψ) and ω (…, 3) in body axes: eq. 2.3.
 
     As the inverse of eq. 2.4, Φ̇ and Ψ̇ hold 1/cos Θ and tan Θ (where 2.3 reads as products
     with cos Θ, fraction bars are lost). They grow without bound towards Θ = ±π/2.
     """
     _, tilt, twist = np.moveaxis(np.asarray(angles, float), -1, 0)
-    w1, w2, w3 = np.moveaxis(np.asarray(omega, float), -1, 0)
+    w1, w2, w3 = in_sequence(list(np.moveaxis(np.asarray(omega, float), -1, 0)), axes)
     somersaulting = (np.sin(twist) * w1 + np.cos(twist) * w2) / np.cos(tilt)
     tilting = np.cos(twist) * w1 - np.sin(twist) * w2
-    return np.stack([somersaulting, tilting, w3 + np.sin(tilt) * somersaulting], -1)
+    rates = np.stack([somersaulting, tilting, w3 + np.sin(tilt) * somersaulting], -1)
+    return _signed(rates, axes)
 
 
-def unwrapped_angles(quaternions: ArrayLike) -> Array:
+def unwrapped_angles(quaternions: ArrayLike, axes: Axes = AXES) -> Array:
     """(Φ, Θ, Ψ) (…, time, 3) along paths of attitudes (…, time, 4), through any number of turns.
 
     Every attitude is (Φ, Θ, Ψ) and also (Φ + π, π − Θ, Ψ + π), each plus whole turns. The
@@ -159,7 +211,7 @@ def unwrapped_angles(quaternions: ArrayLike) -> Array:
     q = np.asarray(quaternions, float)
     if not np.all(np.isfinite(q)):
         raise SomersaultError("Attitudes along a path must be finite; remove the others first.")
-    half_sum, half_difference, tilt, free = _halves(q)
+    half_sum, half_difference, tilt, free = _halves(q, axes)
     half_sum = _kept(half_sum, free & (tilt > 0))
     half_difference = _kept(half_difference, free & (tilt < 0))
     angles = _from_halves(half_sum, half_difference, tilt)
@@ -173,7 +225,7 @@ def unwrapped_angles(quaternions: ArrayLike) -> Array:
     second = np.concatenate([first, np.cumsum(crosses, -1)], -1) % 2 == 1
     turned = angles + np.pi
     turned[..., 1] = np.pi - angles[..., 1]
-    return np.unwrap(np.where(second[..., None], turned, angles), axis=-2)
+    return _signed(np.unwrap(np.where(second[..., None], turned, angles), axis=-2), axes)
 
 
 def _matrix(rows: list[list[Array]]) -> Array:
@@ -185,13 +237,19 @@ def _wrapped(angle: Array) -> Array:
     return angle - 2 * np.pi * np.round(angle / (2 * np.pi))
 
 
-def _halves(q: Array) -> tuple[Array, Array, Array, Array]:
-    """(Φ + Ψ)/2, (Φ − Ψ)/2, Θ, and whether one of the halves is free (Θ = ±π/2).
+def _signed(angles: Array, axes: Axes) -> Array:
+    """(Φ, Θ, Ψ) (…, 3), or rates, about `axes`, of those of attitudes `in_sequence`."""
+    return angles * [side(axes), 1, 1]
+
+
+def _halves(q: Array, axes: Axes) -> tuple[Array, Array, Array, Array]:
+    """(Φ + Ψ)/2, (Φ − Ψ)/2, Θ of attitudes `in_sequence`, and whether a half is free (Θ = ±π/2).
 
     From w ± x and y ∓ z, which are the cosine and sine of (Φ ∓ Ψ)/2 times cos Θ/2 ± sin Θ/2:
     no digits are lost near the singularity. A free half is that of no twist.
     """
-    w, x, y, z = np.moveaxis(q, -1, 0)
+    w, *vector = np.moveaxis(q, -1, 0)
+    x, y, z = in_sequence(vector, axes)
     plus, minus = np.hypot(w + x, y - z), np.hypot(w - x, y + z)
     tilt = 2 * np.arctan2(plus - minus, plus + minus)
     free = np.minimum(plus, minus) <= SINGULAR * np.maximum(plus, minus)

@@ -17,7 +17,7 @@ EXAMPLES = """examples:
   somersault fly examples/layout.toml --out layout.nc --json
 
 A SPEC:
-  model = "furrer"              # a shipped name or a file
+  model = "furrer"              # a shipped name or a file; axes = [1, 2, 3] if its x is lateral
   duration = 5.8                # s
   [takeoff]
   tilt = 0.01                   # rad

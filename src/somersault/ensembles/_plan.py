@@ -185,6 +185,7 @@ class Plan:
         takeoff = asdict(self.takeoff)
         return {
             "model": self.model.name,
+            "axes": list(self.model.axes),
             "model_sha256": hashlib.sha256(repr(self.model).encode()).hexdigest(),
             "duration": self.duration,
             "until": self.until,

@@ -141,7 +141,8 @@ def _units(system: System) -> dict[str, str]:
 @lru_cache(maxsize=64)
 def reader(names: tuple[str, ...], system: System) -> Kernel:
     """The quantities of (angles, state, time, parameters), compiled; once for a system."""
-    return Kernel(values(names, system.quantities, system.state, system.parameters))
+    axes = system.model.axes
+    return Kernel(values(names, system.quantities, system.state, system.parameters, axes))
 
 
 def first_watched(

@@ -38,18 +38,20 @@ def deviated_flight(
     """The flight of a body that spins at `rate` (rad/s), but for a small deviation.
 
     `tilt`, `somersault` and `twist` are small turns (rad) about the principal axes nearest
-    body axes 1, 2 and 3, and `joints` what joints are moved by (rad, m): the coordinates of
-    `Spin.linear`, whose `stiffness`, `damping` (both without dimension) and `lock` mean the
-    same here. The angular momentum is that of the spin, along inertial axis 2, and springs
-    are pretensioned to hold it; joints with neither spring nor damper are free. `options` are
-    those of `fly`.
+    body axes 1, 2 and 3 (in the model's `axes`), and `joints` what joints are moved by (rad, m):
+    the coordinates of `Spin.linear`, whose `stiffness`, `damping` (both without dimension) and
+    `lock` mean the same here. The angular momentum is that of the spin, along the inertial axis of
+    somersault, and springs are pretensioned to hold it; joints with neither spring nor damper are
+    free. `options` are those of `fly`.
     """
     model = instance("spin", spin, Spin).model
     rate = number("rate", rate)
     if rate == 0:
         raise SomersaultError("rate 0 is no spin to deviate from; give one in rad/s")
-    turns = {"tilt": tilt, "somersault": somersault, "twist": twist}
-    deviation = np.array([number(name, turn) for name, turn in turns.items()])
+    turns = {"somersault": somersault, "tilt": tilt, "twist": twist}
+    deviation = np.empty(3)
+    for axis, (name, turn) in zip(model.axes, turns.items(), strict=True):
+        deviation[axis - 1] = number(name, turn)
     springs = spread(model, by_name("stiffness", stiffness), mirrored=False)
     dampers = spread(model, by_name("damping", damping), mirrored=False)
     locked = {model.speeds[place] for place in locked_speeds(model, lock)}
@@ -60,10 +62,11 @@ def deviated_flight(
         joint.name: _setup(spin, joint, rate, moved, springs, dampers, locked)
         for joint in model.joints
     }
-    momentum = rate * float(spin.principal_inertias[spin.axis - 1])
+    along = np.eye(3)[model.axes[0] - 1]
+    momentum = rate * float(spin.principal_inertias[spin.axis - 1]) * along
     takeoff = Takeoff(
         quaternion=_attitude(spin, deviation).tolist(),
-        angular_momentum=(0.0, momentum, 0.0),
+        angular_momentum=momentum.tolist(),
         joints=setups,
     )
     return fly(model, takeoff, duration, **options)
@@ -112,9 +115,9 @@ def _setup(
 
 
 def _attitude(spin: Spin, turn: Array) -> Array:
-    """Quaternion of the spin with its axis along inertial 2, turned about principal axes."""
-    to_two = np.roll(np.eye(3), 2 - spin.axis, axis=0)  # takes the axis of spin to 2
-    steady = to_two @ spin.principal_axes.T
+    """Quaternion of the spin about the inertial axis of somersault, turned about principal axes."""
+    across = np.roll(np.eye(3), spin.model.axes[0] - spin.axis, axis=0)  # from the axis of spin
+    steady = across @ spin.principal_axes.T
     vector = spin.principal_axes @ turn
     half = np.linalg.norm(vector) / 2
     small = np.concatenate([[np.cos(half)], np.sinc(half / np.pi) / 2 * vector])

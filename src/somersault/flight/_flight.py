@@ -57,7 +57,8 @@ class Flight:
     @cached_property
     def _angles(self) -> Array:
         """Somersault, tilt, twist at every point, unwrapped, (points, 3)."""
-        return _from(unwrapped_angles(self._states[:, :4]), self.start.angles)
+        path = unwrapped_angles(self._states[:, :4], self.system.model.axes)
+        return _from(path, self.start.angles)
 
     @cached_property
     def times(self) -> Array:
@@ -220,7 +221,10 @@ class Flight:
         }
 
     def _attributes(self) -> dict[str, Any]:
-        return {"model": self.system.model.name, "ended": self.ended, "steps": self.steps}
+        model = self.system.model
+        return {
+            "model": model.name, "axes": list(model.axes), "ended": self.ended, "steps": self.steps,
+        }  # fmt: skip
 
     def plot(self) -> Figure:
         """The history as a matplotlib picture (`.savefig(file)` writes it)."""

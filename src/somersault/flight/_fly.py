@@ -11,7 +11,7 @@ import numpy as np
 from somersault._array import Array
 from somersault._errors import SomersaultError
 from somersault._given import whole_number
-from somersault.attitude import angles_from_quaternion
+from somersault.attitude import Axes, angles_from_quaternion
 from somersault.dynamics._integrator import STATUS
 from somersault.flight._flight import Flight
 from somersault.flight._numbers import number, numbers
@@ -50,10 +50,10 @@ def fly(
     is the attitude error to stay below over a flight of some somersaults; a body that tumbles
     multiplies errors as it does all deviations. `samples` is how many evenly spaced times are
     kept, the ends included, or the times themselves; by default 100 a second. `until`
-    "quarter twist" ends the flight when twist passes ±π/2 (body axis 2 at right angles to
-    inertial axis 2), found to rounding. A flight that is not done after `steps` steps of the
-    integration, and twenty more for every sample and every 0.6 rad that it may turn, is given up,
-    `ended` by "too many steps": a joint in gimbal lock, or a spring too stiff. Raises
+    "quarter twist" ends the flight when twist passes ±π/2 (the body's axis of somersault at right
+    angles to the inertial one), found to rounding. A flight that is not done after `steps` steps of
+    the integration, and twenty more for every sample and every 0.6 rad that it may turn, is given
+    up, `ended` by "too many steps": a joint in gimbal lock, or a spring too stiff. Raises
     SomersaultError for anything that does not fit.
     """
     model = load(model)
@@ -123,7 +123,7 @@ def _flown(
         flown = points < end
         states = np.concatenate([solution.states[0][flown], solution.final])
         moments = np.append(points[flown], end)
-        parts = _needed(states)
+        parts = _needed(states, chosen.model.axes)
         if np.all(parts <= 1) or len(points) + parts.sum() > _MOST_POINTS:
             break
         points = np.union1d(_divided(moments, parts), points)
@@ -153,7 +153,7 @@ def _divided(points: Array, parts: Array) -> Array:
     return np.repeat(points[:-1], parts) + np.repeat(np.diff(points), parts) * within
 
 
-def _needed(states: Array) -> Array:
+def _needed(states: Array, axes: Axes) -> Array:
     """Into how many parts each gap must be divided for its turns to be counted rightly.
 
     Near tilt ±π/2 somersault and twist run as fast as the body turns over cos Θ, so it must
@@ -165,6 +165,6 @@ def _needed(states: Array) -> Array:
         np.linalg.norm(q[1:] - q[:-1], axis=1), np.linalg.norm(q[1:] + q[:-1], axis=1)
     )
     turn = 4 * np.arcsin(np.minimum(apart / 2, 1.0))
-    upright = np.abs(np.cos(angles_from_quaternion(q)[:, 1]))
+    upright = np.abs(np.cos(angles_from_quaternion(q, axes)[:, 1]))
     near = np.maximum(np.minimum(upright[1:], upright[:-1]), _CLOSEST)
     return np.clip(np.ceil(2 * turn / near), 1, _MOST_PARTS).astype(int)

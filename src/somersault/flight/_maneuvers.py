@@ -19,6 +19,7 @@ import numpy as np
 from somersault._array import Array
 from somersault._errors import SomersaultError
 from somersault._given import by_name, name_list, whole_number
+from somersault.attitude import in_sequence
 from somersault.dynamics import Equations
 from somersault.flight._flight import Flight
 from somersault.flight._fly import fly
@@ -85,7 +86,7 @@ class Maneuver:
 def inertia_change(
     model: str | Model = "gymnast",
     *,
-    axis: int = 2,
+    axis: int | None = None,
     poses: tuple[str, str] = ("layout", "tuck"),
     spin: float = 6.0,
     begin: float = 0.1,
@@ -94,12 +95,15 @@ def inertia_change(
 ) -> Maneuver:
     """A spin that is speeded up, or slowed down, by going from one named pose to another.
 
-    `axis` 2 is a somersault, 3 a twist upright, as a skater's; `spin` (rad/s) is its rate in the
-    first pose; the move begins at `begin` and takes `move` s. The angular momentum lies along
-    inertial axis `axis`. Raises SomersaultError for another axis, and for poses that are none.
+    `axis` is 2 for a somersault (the default), 3 for a twist upright, as a skater's, or as the
+    model's `axes` say; `spin` (rad/s) is its rate in the first pose; the move begins at `begin` and
+    takes `move` s. The angular momentum lies along inertial axis `axis`. Raises SomersaultError for
+    another axis, and for poses that are none.
     """
-    if not isinstance(axis, int) or axis not in (2, 3):
-        raise SomersaultError(f"axis is {axis!r}; give 2 for a somersault or 3 for a twist")
+    a, _, c = load(model).axes
+    axis = a if axis is None else axis
+    if isinstance(axis, bool) or axis not in (a, c):
+        raise SomersaultError(f"axis is {axis!r}; give {a} for a somersault or {c} for a twist")
     if len(name_list("poses", poses)) != 2:
         raise SomersaultError(f"poses are two, from which to which, and are {poses!r}")
     body, (first, last) = load(model), (_sides(model, name) for name in poses)
@@ -198,16 +202,19 @@ def torque_twist(
     """A somersault that twists from takeoff on, because the ground has given it both (§6.2).
 
     Upright at takeoff in a named pose, turning at `spin` about body axis 2 and at `twist_rate`
-    about 3 (rad/s). The body's long axis is tilted from then on against the angular momentum, which
-    lies along inertial axis 2; all that the pose does not hold still is left to the flight. Raises
-    SomersaultError for poses that are none.
+    about 3 (rad/s; of the model's `axes` the first and the last). The body's long axis is tilted
+    from then on against the angular momentum, which lies along inertial axis 2; all that the pose
+    does not hold still is left to the flight. Raises SomersaultError for poses that are none.
     """
     body, held = load(model), _sides(model, pose)
-    omega = np.array([0.0, number("spin", spin), number("twist_rate", twist_rate)])
+    along, _, up = (np.eye(3)[axis - 1] for axis in body.axes)
+    omega = number("spin", spin) * along + number("twist_rate", twist_rate) * up
     h = _inertia(body, held) @ omega
     # Momentum (0, h2, h3) of an upright body: turned about axis 1 until it lies along 2.
-    tilt = -math.atan2(h[2], math.hypot(h[0], h[1]))
-    start = Takeoff(tilt=tilt, angular_momentum=(0.0, float(np.linalg.norm(h)), 0.0))
+    front, left, head = in_sequence(h.tolist(), body.axes)
+    tilt = -math.copysign(1.0, left) * math.atan2(head, math.hypot(front, left))
+    size = math.copysign(float(np.linalg.norm(h)), h @ along)
+    start = Takeoff(tilt=tilt, angular_momentum=(size * along).tolist())
     return Maneuver(body, _through([(0.0, held)]), start, _seconds(duration=duration))
 
 

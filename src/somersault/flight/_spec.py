@@ -12,6 +12,7 @@ from somersault._errors import SomersaultError
 from somersault.flight._fly import STEPS
 from somersault.flight._numbers import number
 from somersault.flight._spec_keys import (
+    BODY_AXES,
     EITHER,
     NUMBER,
     NUMBERS,
@@ -23,11 +24,13 @@ from somersault.flight._spec_keys import (
 )
 from somersault.flight._spec_motion import moved, softened
 from somersault.flight._takeoff import JointTakeoff, Takeoff
+from somersault.model import Model, load
 
 _MOST_BYTES = 10 * 2**20
 _TOP = {
-    "model": TEXT, "duration": NUMBER, "gravity": NUMBERS, "accuracy": NUMBER,
-    "samples": WHOLE, "steps": WHOLE, "until": TEXT, "takeoff": TABLE, "joints": TABLE,
+    "model": TEXT, "axes": BODY_AXES, "duration": NUMBER, "gravity": NUMBERS,
+    "accuracy": NUMBER, "samples": WHOLE, "steps": WHOLE, "until": TEXT, "takeoff": TABLE,
+    "joints": TABLE,
     "motion": TABLE, "compliance": TABLE,
 }  # fmt: skip
 _TAKEOFF = {
@@ -45,9 +48,12 @@ _JOINT = {
 
 @dataclass(frozen=True)
 class FlightSpec:
-    """What a SPEC file asks for; `options` are keyword arguments of `fly`."""
+    """What a SPEC file asks for; `options` are keyword arguments of `fly`.
 
-    model: str
+    `model` is the name or file that it gives, or, where it gives axes too, the model with them.
+    """
+
+    model: str | Model
     duration: float
     takeoff: Takeoff
     options: dict[str, Any]
@@ -85,7 +91,9 @@ def parse_spec(given: Mapping[str, Any], beside: Path) -> FlightSpec:
             raise SomersaultError(f"joints.{name} must be a table; write [joints.{name}]")
         check_keys(f"joints.{name}.", joint, _JOINT)
     samples = given.get("samples")
-    model = _model(given["model"], beside)
+    model: str | Model = _model(given["model"], beside)
+    if "axes" in given:
+        model = load(model, given["axes"])
     duration = number("duration", given.get("duration", 1.0))
     setups = {name: JointTakeoff(**joint) for name, joint in joints.items()}
     if "motion" in given:

@@ -17,6 +17,7 @@ NUMBER, NUMBERS, TEXT, TEXTS, YES, TABLE = (
 )
 WHOLE = "a whole number"
 EITHER = "a number, or three for a ball"
+BODY_AXES = "1, 2 and 3 in some order (the body's axes of somersault, tilt and twist)"
 _MOST_SHOWN = 200  # characters of a mistaken value
 
 
@@ -39,6 +40,9 @@ def _fits(value: Any, kind: str) -> bool:
         return isinstance(value, bool)
     if kind == TABLE:
         return isinstance(value, Mapping)
+    if kind == BODY_AXES:
+        whole = isinstance(value, list) and all(type(item) is int for item in value)
+        return whole and sorted(value) == [1, 2, 3]
     if kind == EITHER:
         return _fits(value, NUMBER) or _fits(value, NUMBERS)
     if kind in (NUMBERS, TEXTS):

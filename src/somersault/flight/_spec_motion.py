@@ -12,7 +12,7 @@ from somersault.flight._motion import Motion
 from somersault.flight._motion_files import read_motion
 from somersault.flight._spec_keys import NUMBER, TABLE, TEXT, YES, check_keys
 from somersault.flight._takeoff import JointTakeoff, Takeoff, by_joint
-from somersault.model import load
+from somersault.model import Model, load
 
 _MOTION = {
     "file": TEXT, "names": TABLE, "ignore_others": YES, "degrees": YES, "cutoff": NUMBER,
@@ -26,7 +26,7 @@ _COMPLIANCE = {"natural_frequency": NUMBER, "damping_ratio": NUMBER, "pose": "",
 
 
 def moved(
-    given: Mapping[str, Any], model: str, duration: float, beside: Path,
+    given: Mapping[str, Any], model: str | Model, duration: float, beside: Path,
     joints: Mapping[str, JointTakeoff],
 ) -> dict[str, JointTakeoff]:  # fmt: skip
     """What every joint does that a [motion] table prescribes, or that [joints] names: `joints` go
@@ -49,7 +49,7 @@ def moved(
     return {**motion.prescribed(body, duration), **by_joint(body, joints)}
 
 
-def softened(given: Mapping[str, Any], model: str, takeoff: Takeoff) -> Takeoff:
+def softened(given: Mapping[str, Any], model: str | Model, takeoff: Takeoff) -> Takeoff:
     """The takeoff, compliant about what it prescribes as a [compliance] table says."""
     for key in given:
         if key == "pose":

@@ -9,6 +9,7 @@ import numpy as np
 from somersault._array import Array
 from somersault._errors import SomersaultError
 from somersault.attitude import (
+    Axes,
     angles_from_quaternion,
     body_rates,
     matrix_from_quaternion,
@@ -81,7 +82,7 @@ def starts(
     system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...], values: Numbers, count: int
 ) -> Starts:
     """Attitude, spin and pretension of `count` flights whose numbers are `values`."""
-    quaternion, angles = _attitude(takeoff, values, count)
+    quaternion, angles = _attitude(takeoff, values, count, system.model.axes)
     both = [position(plan, values, count) for plan in plans]
     q = np.concatenate([np.zeros((count, 0)), *(x for x, _ in both)], 1)
     u = np.concatenate([np.zeros((count, 0)), *(x for _, x in both)], 1)
@@ -96,7 +97,7 @@ def starts(
         omega = np.linalg.solve(system.equations.inertia(q, bodies), wanted[..., None])[..., 0]
     else:
         rates = row(values, [("takeoff", n) for n in ("spin", "tilt_rate", "twist_rate")], count)
-        omega = body_rates(angles, rates)
+        omega = body_rates(angles, rates, system.model.axes)
     found = Starts(quaternion, omega, q, u, angles, values, bodies)
     if any(plan.hold for plan in plans):
         found = replace(found, values=_pretensioned(system, takeoff, plans, found))
@@ -109,15 +110,16 @@ def momentum(system: System, begun: Starts) -> Array:
     return _turned(matrix_from_quaternion(begun.quaternion), h)
 
 
-def _attitude(takeoff: Takeoff, values: Numbers, count: int) -> tuple[Array, Array]:
+def _attitude(takeoff: Takeoff, values: Numbers, count: int, axes: Axes) -> tuple[Array, Array]:
     if takeoff.quaternion is None:
         angles = row(values, [("takeoff", n) for n in ("somersault", "tilt", "twist")], count)
         # Each angle by itself, in one piece: the same arithmetic however many there are.
-        return quaternion_from_angles(*(np.ascontiguousarray(x) for x in angles.T)), angles
+        one, two, three = (np.ascontiguousarray(x) for x in angles.T)
+        return quaternion_from_angles(one, two, three, axes), angles
     given = np.asarray(takeoff.quaternion, float)
     given = given / np.abs(given).max()
     given = given / np.linalg.norm(given)
-    return np.tile(given, (count, 1)), np.tile(angles_from_quaternion(given), (count, 1))
+    return np.tile(given, (count, 1)), np.tile(angles_from_quaternion(given, axes), (count, 1))
 
 
 def _turned(matrix: Array, vector: Array) -> Array:
@@ -138,8 +140,8 @@ def _pretensioned(
 ) -> Numbers:
     """The numbers with the torque that balances the nominal spin added to held joints' own.
 
-    That is the steady spin of the takeoff pose about its principal axis nearest 2, at the rate
-    asked for, or else at the one that has this angular momentum.
+    That is the steady spin of the takeoff pose about its principal axis nearest that of somersault,
+    at the rate asked for, or else at the one that has this angular momentum.
     """
     values, q, bodies = begun.values, begun.q, begun.bodies
     shaped = [k for k in values if k[0] in ("angle", "times", "angles") or k[0] in system.bodies]

@@ -14,6 +14,7 @@ from typing import Any
 
 import casadi as ca
 
+from somersault.attitude import in_sequence
 from somersault.dynamics._articulated import forward_dynamics
 from somersault.dynamics._composite import composites, outboard_inertia
 from somersault.dynamics._motion import place
@@ -212,8 +213,8 @@ class Symbols:
     @cached_property
     def gauge(self) -> Any:
         """cos Θ cos Ψ (eq. 2.2): its sign changes at a quarter twist."""
-        _, x, _, z = self.quaternion
-        return 1 - 2 * (x * x + z * z)
+        tilting, _, twisting = in_sequence(self.quaternion[1:], self.model.axes)
+        return 1 - 2 * (tilting * tilting + twisting * twisting)
 
     @cached_property
     def loads(self) -> Any:

@@ -87,8 +87,8 @@ class System:
         return Integrator(
             slope,
             gauge,
-            watch(self.extremes, self.quantities, self.state, self.parameters),
-            self._function("longest", longest(s.quaternion, s.omega)),
+            watch(self.extremes, self.quantities, self.state, self.parameters, self.model.axes),
+            self._function("longest", longest(s.quaternion, s.omega, self.model.axes)),
             s.changing,
         )
 

@@ -58,10 +58,11 @@ class JointTakeoff:
 class Takeoff:
     """The start of a flight. SI units and radians.
 
-    Attitude by `somersault`, `tilt`, `twist`, or by a `quaternion` (body to inertial). One of
-    `spin` (rad/s about inertial axis 2, the rate of the nominal steady spin: Φ̇ = spin, and
-    Θ̇ and Ψ̇ are `tilt_rate` and `twist_rate`, whatever the attitude), `angular_velocity` (body
-    axes) or `angular_momentum` (inertial axes, kg m²/s).
+    Attitude by `somersault`, `tilt`, `twist`, about the model's `axes` (2, 1, 3 unless it says
+    otherwise), or by a `quaternion` (body to inertial). One of
+    `spin` (rad/s about the inertial axis of somersault, the rate of the nominal steady spin:
+    Φ̇ = spin, and Θ̇ and Ψ̇ are `tilt_rate` and `twist_rate`, whatever the attitude),
+    `angular_velocity` (body axes) or `angular_momentum` (inertial axes, kg m²/s).
     `velocity` is that of the centre of mass (m/s). `tape` is the angular velocity (body axes) at
     takeoff of the nominal flight whose joint torques are replayed to compliant joints: that of
     the same paths, exactly followed.

@@ -16,6 +16,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from somersault.attitude import Axes, in_sequence, side
+
 ANGLES = ("somersault", "tilt", "twist")
 RATES = tuple(f"{name}_rate" for name in ANGLES)
 VELOCITIES = tuple(f"angular_velocity_{k}" for k in (1, 2, 3))
@@ -30,26 +32,26 @@ def watched(extremes: tuple[str, ...]) -> list[str]:
     return [*ANGLES, *(f"{which}_{name}" for name in extremes for which in ("least", "greatest"))]
 
 
-def longest(quaternion: list[Any], omega: list[Any]) -> Any:
+def longest(quaternion: list[Any], omega: list[Any], axes: Axes) -> Any:
     """The longest step (s) from a state: to less than where somersault and twist run off."""
-    upright = ca.sqrt(ca.fmax(1 - _sine_of_tilt(quaternion) ** 2, 0))
+    upright = ca.sqrt(ca.fmax(1 - _sine_of_tilt(quaternion, axes) ** 2, 0))
     rate = ca.sqrt(sum(w * w for w in omega) + 1e-300)
     return ca.fmin(ca.fmax(upright, _NEAREST), 1.0) * _LONGEST / rate
 
 
 def watch(
-    extremes: tuple[str, ...], quantities: Quantities, state: int, parameters: int
+    extremes: tuple[str, ...], quantities: Quantities, state: int, parameters: int, axes: Axes
 ) -> ca.Function:
-    """The watched rows after a step, of the rows of `Rows.look`."""
+    """The watched rows after a step, of the rows of `Rows.look`; angles are about `axes`."""
     y0, f0, y1, f1 = (ca.SX.sym(name, state) for name in ("y0", "f0", "y1", "f1"))
     t0, t1 = ca.SX.sym("t0"), ca.SX.sym("t1")
     p, before = ca.SX.sym("p", parameters), ca.SX.sym("w", 3 + 2 * len(extremes))
     angles = [before[k] for k in range(3)]
-    after = _followed(angles, [y1[k] for k in range(4)])
+    after = _followed(angles, [y1[k] for k in range(4)], axes)
     rows = list(after)
     if extremes:
-        g0, rate0 = _with_rates(extremes, quantities, angles, y0, f0, t0, p)
-        g1, rate1 = _with_rates(extremes, quantities, after, y1, f1, t1, p)
+        g0, rate0 = _with_rates(extremes, quantities, angles, y0, f0, t0, p, axes)
+        g1, rate1 = _with_rates(extremes, quantities, after, y1, f1, t1, p, axes)
         for k in range(len(extremes)):
             least, greatest = _extremes(g0[k], g1[k], (t1 - t0) * rate0[k], (t1 - t0) * rate1[k])
             rows += [ca.fmin(before[3 + 2 * k], least), ca.fmax(before[4 + 2 * k], greatest)]
@@ -57,28 +59,34 @@ def watch(
     return ca.Function("watch", [look], [ca.cse(ca.densify(ca.vertcat(*rows)))])
 
 
-def values(extremes: tuple[str, ...], quantities: Quantities, state: int, parameters: int) -> Any:
+def values(
+    extremes: tuple[str, ...], quantities: Quantities, state: int, parameters: int, axes: Axes
+) -> ca.Function:
     """The quantities at one moment, of (angles, state, time, parameters)."""
     s, y, t = ca.SX.sym("s", 3), ca.SX.sym("y", state), ca.SX.sym("t")
     p = ca.SX.sym("p", parameters)
-    found = _named(quantities, [s[k] for k in range(3)], y, t, p)
+    found = _named(quantities, [s[k] for k in range(3)], y, t, p, axes)
     chosen = ca.vertcat(*[found[name] for name in extremes])
     return ca.Function("values", [ca.vertcat(s, y, t, p)], [ca.cse(ca.densify(chosen))])
 
 
-def _sine_of_tilt(quaternion: list[Any]) -> Any:
-    w, x, y, z = quaternion
+def _sine_of_tilt(quaternion: list[Any], axes: Axes) -> Any:
+    w, x, y, z = _renamed(quaternion, axes)
     return 2 * (w * x - y * z) / (w * w + x * x + y * y + z * z)
 
 
-def _followed(angles: list[Any], quaternion: list[Any]) -> list[Any]:
+def _renamed(quaternion: list[Any], axes: Axes) -> list[Any]:
+    return [quaternion[0], *in_sequence(quaternion[1:], axes)]
+
+
+def _followed(angles: list[Any], quaternion: list[Any], axes: Axes) -> list[Any]:
     """Somersault, tilt and twist of an attitude, in the representation nearest to `angles`."""
-    w, x, y, z = quaternion
+    w, x, y, z = _renamed(quaternion, axes)
     half_sum, half_difference = ca.atan2(y + z, w - x), ca.atan2(y - z, w + x)
     plus = ca.sqrt((w + x) ** 2 + (y - z) ** 2)
     minus = ca.sqrt((w - x) ** 2 + (y + z) ** 2)
     tilt = 2 * ca.atan2(plus - minus, plus + minus)
-    here = [half_sum + half_difference, tilt, half_sum - half_difference]
+    here = [side(axes) * (half_sum + half_difference), tilt, half_sum - half_difference]
     there = [here[0] + np.pi, np.pi - tilt, here[2] + np.pi]
     by = [_wrapped(a - b) for a, b in zip(here, angles, strict=True)]
     other = [_wrapped(a - b) for a, b in zip(there, angles, strict=True)]
@@ -91,13 +99,15 @@ def _wrapped(angle: Any) -> Any:
     return angle - 2 * np.pi * ca.floor(angle / (2 * np.pi) + 0.5)
 
 
-def _named(quantities: Quantities, angles: list[Any], y: Any, t: Any, p: Any) -> dict[str, Any]:
+def _named(
+    quantities: Quantities, angles: list[Any], y: Any, t: Any, p: Any, axes: Axes
+) -> dict[str, Any]:
     _, tilt, twist = angles
     known = quantities(y, t, p)
-    w1, w2, w3 = (known[name] for name in VELOCITIES)
+    w1, w2, w3 = in_sequence([known[name] for name in VELOCITIES], axes)
     somersaulting = (ca.sin(twist) * w1 + ca.cos(twist) * w2) / ca.cos(tilt)  # eq. 2.3
     tilting = ca.cos(twist) * w1 - ca.sin(twist) * w2
-    rates = [somersaulting, tilting, w3 + ca.sin(tilt) * somersaulting]
+    rates = [side(axes) * somersaulting, tilting, w3 + ca.sin(tilt) * somersaulting]
     return {
         **dict(zip(ANGLES, angles, strict=True)),
         **dict(zip(RATES, rates, strict=True)),
@@ -113,10 +123,11 @@ def _with_rates(
     f: Any,
     t: Any,
     p: Any,
+    axes: Axes,
 ) -> tuple[list[Any], list[Any]]:
     """Quantities and their time derivatives, at a state whose slope is f."""
     s, yy, tt = ca.SX.sym("s", 3), ca.SX.sym("yy", y.numel()), ca.SX.sym("tt")
-    found = _named(quantities, [s[k] for k in range(3)], yy, tt, p)
+    found = _named(quantities, [s[k] for k in range(3)], yy, tt, p, axes)
     chosen = ca.vertcat(*[found[name] for name in names])
     direction = ca.vertcat(*[found[name] for name in RATES], f, 1.0)
     point = ca.vertcat(s, yy, tt)

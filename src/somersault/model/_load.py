@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from importlib.resources import as_file, files
 from pathlib import Path
 
 from somersault._errors import SomersaultError, SomersaultWarning
+from somersault.attitude import as_axes
 from somersault.model._types import Model
 
 _SHIPPED = files("somersault.model") / "shipped"
@@ -20,13 +23,22 @@ def shipped() -> tuple[str, ...]:
     return tuple(sorted(f.name[:-4] for f in _SHIPPED.iterdir() if f.name.endswith(".xml")))
 
 
-def load(source: str | os.PathLike[str] | Model) -> Model:
+def load(source: str | os.PathLike[str] | Model, axes: Sequence[int] | None = None) -> Model:
     """A model, by the name of a shipped one or from an MJCF, URDF or bioMod file.
 
     The format follows the ending: .xml or .mjcf, .urdf, .bioMod. A `Model` is given back as
     it is. What a file holds that has no part in flight is left out with a SomersaultWarning;
     what would change a flight and cannot be carried raises SomersaultError.
+
+    `axes` are the body's axes about which it somersaults, tilts and twists: (2, 1, 3) unless
+    said otherwise, whatever the file; (1, 2, 3) for an acrobat of biorbd's with x to his right.
     """
+    wanted = None if axes is None else as_axes(axes)
+    model = _found(source)
+    return model if wanted is None else replace(model, axes=wanted)
+
+
+def _found(source: str | os.PathLike[str] | Model) -> Model:
     if isinstance(source, Model):
         return source
     try:
@@ -45,7 +57,7 @@ def load(source: str | os.PathLike[str] | Model) -> Model:
         warnings.warn(
             f"{path.name}: left out, as they have no part in flight: {', '.join(model.ignored)}",
             SomersaultWarning,
-            stacklevel=2,
+            stacklevel=3,
         )
     return model
 

@@ -14,6 +14,7 @@ from functools import lru_cache
 import numpy as np
 
 from somersault._array import Array
+from somersault.attitude import from_sequence
 from somersault.model._types import GROUND, Joint, Model
 
 _CLOSE = 1e-6  # of the body's own size
@@ -38,13 +39,13 @@ class Pair:
 def mirror_pairs(model: Model) -> tuple[Pair, ...]:
     """The pairs of a model in the pose in which its file draws it; () if it has no symmetry.
 
-    The plane is the one across a base axis that mirrors the most joints, across axis 2 (left)
-    where that does not decide.
+    The plane is the one across a base axis that mirrors the most joints, across the axis of
+    somersault (left and right) where that does not decide.
     """
     drawn = _drawn(model)
     best: tuple[Pair, ...] = ()
-    for normal in (1, 0, 2):
-        pairs = _pairs(model, drawn, normal)
+    for axis in model.axes:
+        pairs = _pairs(model, drawn, axis - 1)
         if sum(p.left != p.right for p in pairs) > sum(p.left != p.right for p in best):
             best = pairs
     return best
@@ -178,26 +179,28 @@ def _speed_pairs(
     signs = _sign(drawn[index], drawn[other], joint, image, mirror)
     assert signs is not None
     first, second = joint, image
-    if index != other and _is_right(joint, image, drawn[index], drawn[other], normal):
+    left = np.zeros(3)
+    left[normal] = from_sequence((1, 1, 1), model.axes)[normal]
+    if index != other and _is_right(joint, image, drawn[index], drawn[other], left):
         first, second = image, joint
-    left, right = model.speed_slice(first.name), model.speed_slice(second.name)
+    one, two = model.speed_slice(first.name), model.speed_slice(second.name)
     name = common_name(first.name, second.name)
     return [
         Pair(
             name if joint.kind != "ball" else f"{name}.{k + 1}",
-            left.start + k,
-            right.start + k,
+            one.start + k,
+            two.start + k,
             int(sign),
         )
         for k, sign in enumerate(signs)
     ]
 
 
-def _is_right(joint: Joint, image: Joint, a: _Drawn, b: _Drawn, normal: int) -> bool:
+def _is_right(joint: Joint, image: Joint, a: _Drawn, b: _Drawn, left: Array) -> bool:
     for this, that, answer in ((joint, image, True), (image, joint, False)):
         if _side(this.name) == "right" or _side(that.name) == "left":
             return answer
-    return bool(a.com[normal] < b.com[normal])
+    return bool(a.com @ left < b.com @ left)
 
 
 _SIDE = re.compile(

@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 
 from somersault._errors import SomersaultError
+from somersault.attitude import AXES, Axes, as_axes
 
 Vector = tuple[float, float, float]
 Matrix = tuple[Vector, Vector, Vector]
@@ -86,16 +87,19 @@ class Body:
 class Model:
     """Bodies in order, parents first. With a `free` base, body 0 is the base, in the air.
 
-    `ignored` says what the file held that has no part in flight. Raises SomersaultError for
-    anything that cannot be a body in the air (see `_check`).
+    `ignored` says what the file held that has no part in flight. `axes` are the base's axes
+    about which it somersaults, tilts and twists: they decide what those angles mean, and nothing
+    else. Raises SomersaultError for anything that cannot be a body in the air (see `_check`).
     """
 
     name: str
     free: bool
     bodies: tuple[Body, ...]
     ignored: tuple[str, ...] = ()
+    axes: Axes = AXES
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "axes", as_axes(self.axes))
         _check(self)
 
     @cached_property
@@ -176,6 +180,11 @@ def _check(model: Model) -> None:
     """Refuse what cannot be a body in the air, naming the body or joint and the mend."""
     if not model.bodies:
         raise SomersaultError(f"{model.name} has no bodies, so nothing can fly; add a body")
+    if not model.free and model.axes != AXES:
+        raise SomersaultError(
+            f"{model.name} has a fixed base, so it has no somersault, tilt or twist; leave its "
+            "axes out"
+        )
     for what, names in (
         ("body", [body.name for body in model.bodies]),
         ("joint", [joint.name for joint in model.joints]),

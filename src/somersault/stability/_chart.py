@@ -24,6 +24,7 @@ from somersault.stability._spin import (
     axis_index,
     composite_inertia,
     evaluated,
+    or_somersault,
     principal,
     require_free,
     require_inertia,
@@ -165,7 +166,7 @@ def growth_rates(
     model: str | Model,
     quantities: Values,
     *,
-    axis: Axis | str | int = 2,
+    axis: Axis | str | int | None = None,
     lock: Iterable[str] = (),
     subsystem: str | None = None,
 ) -> Array:
@@ -173,13 +174,13 @@ def growth_rates(
 
     Quantities are named "pose.JOINT" (rad), "stiffness.JOINT" and "damping.JOINT" (k/(Ω² I)
     and b/(Ω I)), "mass.BODY", "com.BODY.1", "position.BODY.2", "inertia.BODY.11"; a
-    mirrored pair's common name sets both sides. `subsystem` names a coordinate and keeps only
-    the decoupled part it is in.
+    mirrored pair's common name sets both sides. `axis` is that of `spin`. `subsystem` names a
+    coordinate and keeps only the decoupled part it is in.
     """
     model = load(model)
     require_free(model)
     quantities = by_name("quantities", quantities)
-    whole = _system(model, axis, quantities, lock)
+    whole = _system(model, or_somersault(model, axis), quantities, lock)
     shape = np.broadcast_shapes(*(np.shape(v) for v in quantities.values()))
     rates = [
         _gyric.growth_rate(_gyric.reduced(p.mass, p.rate, p.stiffness, p.attitude))
@@ -223,7 +224,7 @@ def chart(
     y: tuple[str, ArrayLike],
     *,
     fixed: Values | None = None,
-    axis: Axis | str | int = 2,
+    axis: Axis | str | int | None = None,
     lock: Iterable[str] = (),
     subsystem: str | None = None,
     energy: bool = False,
@@ -237,6 +238,7 @@ def chart(
     import xarray as xr
 
     model = load(model)
+    axis = or_somersault(model, axis)
     (x_name, x_values), (y_name, y_values) = _row("x of a chart", x), _row("y of a chart", y)
     if x_values.ndim != 1 or y_values.ndim != 1 or not x_values.size or not y_values.size:
         raise SomersaultError("a chart needs one row of values for each of x and y")
@@ -298,7 +300,7 @@ def root_locus(
     along: tuple[str, ArrayLike],
     *,
     fixed: Values | None = None,
-    axis: Axis | str | int = 2,
+    axis: Axis | str | int | None = None,
     lock: Iterable[str] = (),
     subsystem: str | None = None,
 ) -> xr.Dataset:
@@ -313,6 +315,7 @@ def root_locus(
 
     model = load(model)
     require_free(model)
+    axis = or_somersault(model, axis)
     name, values = _row("what a root locus is along", along)
     if values.ndim != 1 or not values.size:
         raise SomersaultError("a root locus needs one row of values")
@@ -338,7 +341,7 @@ def stable_ranges(
     along: tuple[str, float, float],
     *,
     fixed: Values | None = None,
-    axis: Axis | str | int = 2,
+    axis: Axis | str | int | None = None,
     lock: Iterable[str] = (),
     subsystem: str | None = None,
     samples: int = 1201,

@@ -12,7 +12,7 @@ from somersault.model._mirror import mirror_pairs
 from somersault.stability._gyric import Attitude, blocks, together
 from somersault.stability._spin import cycle
 
-_TURNS = ("tilt", "somersault", "twist")  # about axes 1, 2, 3
+_TURNS = ("somersault", "tilt", "twist")  # about a model's `axes`
 
 
 @dataclass(frozen=True)
@@ -35,12 +35,15 @@ class Coordinates:
 def coordinates(model: Model, axis: int, locked: set[int]) -> Coordinates:
     """Attitude turns and the joints that are not locked; mirrored ones in pairs.
 
-    The order is the thesis's: the two turns across the axis of spin, antisymmetric joint
-    motions, the turn about the axis, symmetric ones, and what has no mirror image.
+    The order is the thesis's: the two turns across the axis of spin, tilt first and twist last,
+    antisymmetric joint motions, the turn about the axis, symmetric ones, and what has no mirror
+    image.
     """
     count = len(model.speeds)
     before, about, after = cycle(axis)
     turns = {i: np.eye(3 + count)[:, i] for i in range(3)}
+    called = {axis - 1: name for axis, name in zip(model.axes, _TURNS, strict=True)}
+    across = sorted((before, after), key=lambda i: ("tilt", "somersault", "twist").index(called[i]))
     antisymmetric: list[tuple[str, Array]] = []
     symmetric: list[tuple[str, Array]] = []
     left = [i for i in range(count) if i not in locked]
@@ -56,10 +59,10 @@ def coordinates(model: Model, axis: int, locked: set[int]) -> Coordinates:
             symmetric.append((f"symmetric {pair.name}", one + two))
         left = [i for i in left if i not in (pair.left, pair.right)]
     alone = [(model.speeds[i], _unit(count, i)) for i in left]
-    ahead = [(_TURNS[i], turns[i]) for i in sorted((before, after))]
-    listed = [*ahead, *antisymmetric, (_TURNS[about], turns[about]), *symmetric, *alone]
+    ahead = [(called[i], turns[i]) for i in across]
+    listed = [*ahead, *antisymmetric, (called[about], turns[about]), *symmetric, *alone]
     names = [name for name, _ in listed]
-    places = Attitude(*(names.index(_TURNS[i]) for i in (before, about, after)))
+    places = Attitude(*(names.index(called[i]) for i in (before, about, after)))
     return Coordinates(tuple(names), np.column_stack([c for _, c in listed]), places)
 
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 Axis = Literal["minor", "intermediate", "major", 1, 2, 3]
 _WORTH_COMPILING = 8  # samples
-_ALONG = 1e-15  # of the inertia: products below it leave body axis 2 a principal axis
+_ALONG = 1e-15  # of the inertia: products below it leave a body axis a principal axis
 _RANK = {"minor": 0, "intermediate": 1, "major": 2}
 
 
@@ -97,15 +97,17 @@ def cycle(axis: int) -> tuple[int, int, int]:
 
 
 def spin(
-    model: str | Model, axis: Axis | str | int = 2, pose: Mapping[str, ArrayLike] | None = None
+    model: str | Model,
+    axis: Axis | str | int | None = None,
+    pose: Mapping[str, ArrayLike] | None = None,
 ) -> Spin:
     """The steady spin of a model in a pose about a principal axis.
 
     `axis` is "minor", "intermediate" or "major", or 1, 2, 3 for the principal axis nearest
-    that body axis (2: a somersault). `pose` gives joint angles by name in rad (m for slides),
-    a left–right pair's by its common name; the rest stand as the file draws them. Raises
-    SomersaultError for a model without a free base, an unknown axis or joint, or a pose
-    outside limits.
+    that body axis; by default that of somersault, the first of the model's `axes`. `pose` gives
+    joint angles by name in rad (m for slides), a left–right pair's by its common name; the rest
+    stand as the file draws them. Raises SomersaultError for a model without a free base, an unknown
+    axis or joint, or a pose outside limits.
     """
     model = load(model)
     require_free(model)
@@ -116,7 +118,7 @@ def spin(
         raise SomersaultError("a spin has one pose; use stability.chart for several")
     about = principal(composite_inertia(model, q))
     require_inertia(model, about.inertias)
-    index = axis_index(about, axis)
+    index = axis_index(about, or_somersault(model, axis))
     turned = evaluated(model, q, about.axes[:, index])
     _require_independent(model, turned.mass)
     return Spin(
@@ -215,6 +217,11 @@ def _sharpened(inertia: Array, axes: Array) -> Principal:
     return Principal(np.einsum("...kk->...k", left), axes)
 
 
+def or_somersault(model: Model, axis: Axis | str | int | None) -> Axis | str | int:
+    """The axis asked for, or else the one that the model somersaults about."""
+    return model.axes[0] if axis is None else axis
+
+
 def axis_index(about: Principal, axis: Axis | str | int) -> int:
     """Index 0, 1, 2 of the principal axis meant."""
     if str(axis) in ("1", "2", "3"):
@@ -311,15 +318,16 @@ def holding(
     *,
     compiled: bool,
 ) -> tuple[Array, Array]:
-    """Of the steady spins about the principal axes nearest body axis 2, at poses q (N, …):
+    """Of the steady spins about the principal axes nearest that of somersault, at poses q (N, …):
     inertia (N,), kg m², and what holds each joint speed at Ω = 1 rad/s, (N, speeds)."""
     whole = composite_inertia(model, q, parameters, values)
-    axis = np.tile([0.0, 1.0, 0.0], (len(q), 1))
-    inertia = whole[:, 1, 1].copy()
-    tilted = np.abs(whole[:, 0, 1]) + np.abs(whole[:, 1, 2]) > _ALONG * inertia
-    if tilted.any():  # elsewhere body axis 2 is a principal axis as it is
+    before, k, after = cycle(model.axes[0])
+    axis = np.tile(np.eye(3)[k], (len(q), 1))
+    inertia = whole[:, k, k].copy()
+    tilted = np.abs(whole[:, before, k]) + np.abs(whole[:, k, after]) > _ALONG * inertia
+    if tilted.any():  # elsewhere the body's own axis is a principal axis as it is
         about = principal(whole[tilted])
-        inertia[tilted], axis[tilted] = about.inertias[:, 1], about.axes[..., 1]
+        inertia[tilted], axis[tilted] = about.inertias[:, k], about.axes[..., k]
     require_inertia(model, np.linalg.eigvalsh(whole[:1]))
     values = np.zeros((1, 0)) if values is None else values
     parts = [np.broadcast_to(x, (len(q), x.shape[-1])) for x in (q, axis, values)]

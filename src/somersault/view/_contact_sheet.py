@@ -32,7 +32,8 @@ def contact_sheet(
     """Pictures of a flight at some times (s), in rows, each with its time and its angles.
 
     Each is the flight's sample nearest to the time asked for. The centre of mass stands
-    still; `view` is the camera's azimuth and elevation in degrees.
+    still; `view` is the camera's azimuth and elevation in degrees, from the front towards the left
+    and up, as the model's `axes` have them at takeoff.
     """
     rows = -(-len(times) // columns)
     made = look.figure(1.15 * columns, 1.75 * rows + 0.3)
@@ -63,7 +64,7 @@ def strip(
     model = flight.system.model
     history = flight.dataset
     size = _size(flight, times) if size is None else size
-    seen = parts.camera(*view)
+    seen = parts.camera(*view, model.axes)
     for place, moment in enumerate(times):
         here = history.isel(time=_nearest(flight, moment))
         turn = matrix_from_quaternion(here["quaternion"].values)

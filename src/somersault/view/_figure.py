@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from somersault._array import Array
-from somersault.attitude import matrix_from_quaternion
+from somersault.attitude import AXES, in_sequence, matrix_from_quaternion
+from somersault.attitude import Axes as BodyAxes
 from somersault.model import GROUND, Body, Joint, Model, load, shipped
 
 if TYPE_CHECKING:
@@ -76,7 +77,7 @@ def centre_of_mass(model: Model, q: Array) -> Array:
 @cache
 def solids(model: Model) -> tuple[Solid, ...]:
     """The shapes that a shipped model's file draws; of any other model, sticks."""
-    if model.name in shipped() and load(model.name) == model:
+    if model.name in shipped() and load(model.name, model.axes) == model:
         found = _drawn(model)
         if found:
             return found
@@ -154,12 +155,14 @@ def _joint_in(child: Body) -> Array:
 # ------------------------------------------------------------------------------- pictures
 
 
-def camera(azimuth: float, elevation: float) -> Array:
-    """Rows right, up and towards the eye (3, 3); angles in degrees, from axis 1 towards 2 and 3."""
+def camera(azimuth: float, elevation: float, axes: BodyAxes = AXES) -> Array:
+    """Rows right, up and towards the eye (3, 3); angles in degrees, from the axis of tilt (front)
+    towards the body's left and up the axis of twist (head)."""
     a, e = np.radians([azimuth, elevation])
     eye = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
     right = np.array([-np.sin(a), np.cos(a), 0.0])
-    return np.stack([right, np.cross(eye, right), eye])
+    seen = np.stack([right, np.cross(eye, right), eye])
+    return seen @ np.array(in_sequence(list(np.eye(3)), axes))
 
 
 def draw(
