@@ -1,7 +1,7 @@
 """Find the rudi: a front somersault with one and a half twists (Playter 1994, section 6.3.1).
 
     python scripts/rudi.py          # a few minutes; writes src/somersault/thesis/rudi.json
-    python scripts/rudi.py gentle   # a quarter of an hour on two cores, with `cma`: rudi_gentle.json
+    python scripts/rudi.py gentle   # a quarter of an hour on two cores; rudi_gentle.json; needs cma
 
 The gymnast takes off upright and piked with arms straight out at 12.6 rad/s. A quarter of a hula
 movement (the legs swing from in front to the side, then under the body) tilts him; the arms are
