@@ -108,9 +108,8 @@ def _of_the_motion(rate: float) -> tuple[Claim, ...]:
         ),
         number(
             "gentle.rate", "§6.3.1", "the greatest twist rate", _RATE, rate, "rad/s", 6.0,
-            "Torques bounded as an athlete's do not let the hula make so much tilt in the time "
-            "there is, nor the arms come in so late and open again: the thesis's motion must have "
-            "had more, or another technique beside.",
+            "No motion was found within these torques that twists so fast. The thesis's had more "
+            "torque, another technique, or the search missed it.",
         ),
         statement(
             "gentle.front", "§6.3.1", "the thesis's twist rate takes more than twice these torques",
