@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import importlib.util
+import sys
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+
 import numpy as np
 import pytest
 from scipy.linalg import eig
@@ -11,21 +17,94 @@ from somersault.dynamics import Equations
 from somersault.thesis import _eigenfrequencies as table
 from somersault.thesis import _rudi as rudi
 from somersault.thesis import _rudi_flights as flights
+from somersault.thesis import _rudi_gentle as gentle
 from somersault.thesis import _why_compliance as why
 
+KEPT: tuple[rudi.Kept, ...] = ("rudi", "rudi_gentle")
 
-def test_the_nominal_motion_is_within_limits_and_does_what_it_should() -> None:
-    model, end = so.load(rudi.MODEL), rudi.nominal().landing
+
+@cache
+def _script() -> ModuleType:
+    path = Path(__file__).parents[1] / "scripts" / "rudi.py"
+    spec = importlib.util.spec_from_file_location("rudi", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def _numbers(given: dict[str, float]) -> dict[str, np.ndarray]:
+    return {name: np.array([value]) for name, value in given.items()}
+
+
+@pytest.mark.parametrize("kept", KEPT)
+def test_the_nominal_motions_are_within_limits_and_do_what_they_should(kept: rudi.Kept) -> None:
+    model, end = so.load(rudi.MODEL), rudi.nominal(kept).landing
     for joint in model.joints:
         low, high = joint.limits
-        angles = rudi.nominal().dataset["joint_angle"].sel(joint=joint.name).values
+        angles = rudi.nominal(kept).dataset["joint_angle"].sel(joint=joint.name).values
         assert low - 1e-9 <= angles.min()
         assert angles.max() <= high + 1e-9
     assert end.somersault / (2 * np.pi) == pytest.approx(1.0, abs=0.02)
     assert abs(end.twist) / (2 * np.pi) == pytest.approx(1.5, abs=0.02)
     assert abs(end.tilt) < 0.1
-    history = rudi.nominal().dataset
+    history = rudi.nominal(kept).dataset
     assert float(history["somersault"][1] / history["time"][1]) == pytest.approx(12.6, abs=0.1)
+
+
+@pytest.mark.parametrize("kept", KEPT)
+def test_what_is_kept_is_the_scripts_motion(kept: rudi.Kept) -> None:
+    script, found = _script(), rudi.data(kept)
+    shortest = script.GENTLE_SWING if kept == "rudi_gentle" else script.SWING
+    paths, done = script.motion(_numbers(found["numbers"]), shortest)
+    assert set(paths) == set(found["joints"])
+    for name, (times, angles) in paths.items():
+        np.testing.assert_allclose(found["joints"][name]["times"], times[0], atol=1e-6)
+        np.testing.assert_allclose(found["joints"][name]["angles"], angles[0], atol=1e-6)
+    assert done[0] <= found["landing"]
+
+
+def test_the_gentle_motion_keeps_its_bounds_and_a_margin_to_the_limits() -> None:
+    found, flight = rudi.data("rudi_gentle"), rudi.nominal("rudi_gentle")
+    assert found["bounds"] == _script().BOUNDS
+    peaks = gentle.peaks()
+    assert all(peaks[group] <= gentle.OVER * bound for group, bound in found["bounds"].items())
+    assert abs(flight.landing.tilt) < 0.05
+    assert flight.landing.somersault == pytest.approx(2 * np.pi, abs=0.03)
+    assert abs(flight.landing.twist) == pytest.approx(3 * np.pi, abs=0.03)
+    assert rudi.twist_rate("rudi_gentle")[0] == pytest.approx(found["front"][0]["twist_rate"], 2e-3)
+    for joint in so.load(rudi.MODEL).joints:
+        if "elbow" in joint.name:
+            continue  # straight is its limit
+        angles = flight.dataset["joint_angle"].sel(joint=joint.name).values
+        assert joint.limits[0] + 0.03 < angles.min()
+        assert angles.max() < joint.limits[1] - 0.03
+
+
+def test_the_front_is_what_its_numbers_fly() -> None:
+    script, found = _script(), rudi.data("rudi_gentle")
+    for one in found["front"]:
+        told, peaks, fastest, _ = script.strained(_numbers(one["numbers"]))
+        assert fastest[0] == pytest.approx(one["twist_rate"], abs=0.01)
+        assert told["tilt"][0] == pytest.approx(one["tilt"], abs=1e-3)
+        assert abs(one["tilt"]) < 0.05
+        assert (peaks[0] <= one["times_bounds"] * script.bounds()).all()
+    assert found["front"][0]["numbers"] == found["numbers"]
+    rates = [one["twist_rate"] for one in found["front"]]
+    assert rates == sorted(rates)
+
+
+def test_the_scripts_torques_are_those_of_the_flight() -> None:
+    script, found = _script(), rudi.data("rudi_gentle")
+    _, peaks, _, _ = script.strained(_numbers(found["numbers"]))
+    flight = so.fly(
+        rudi.MODEL, rudi.nominal_takeoff("rudi_gentle"), found["landing"], samples=script.FINE
+    )
+    np.testing.assert_allclose(
+        peaks[0], np.abs(flight.joint_torques.values).max(0), rtol=1e-3, atol=0.05
+    )
 
 
 def test_the_error_by_hand() -> None:
@@ -96,3 +175,10 @@ def test_compliance_has_a_best_frequency_inside() -> None:
     stiff = rudi.error_map(None, points=11).share
     assert shares[28.0] > 4 * stiff
     assert shares[28.0] > 2 * max(shares[20.0], shares[60.0])
+
+
+@pytest.mark.slow
+def test_the_gentle_motion_is_served_by_compliance_too() -> None:
+    claims = {claim.id: claim.holds for claim in gentle.gentle().claims}
+    assert claims["gentle.improved"]
+    assert claims["gentle.interior"]

@@ -26,6 +26,7 @@ from somersault.thesis._reorientation import fig_4_14, fig_4_15
 from somersault.thesis._ridge import fig_4_12
 from somersault.thesis._rigid import fig_4_5, table_4_1
 from somersault.thesis._rudi_flights import fig_6_1, fig_6_4, fig_6_5
+from somersault.thesis._rudi_gentle import gentle
 from somersault.thesis._rudi_maps import fig_6_2, fig_6_3, momentum, poses
 from somersault.thesis._rule import fig_4_17
 from somersault.thesis._scatter import estimate
@@ -96,4 +97,5 @@ ENTRIES = (
     Entry("fig6-5", "Figure 6-5: the same start, compliant", "ch6", fig_6_5),
     Entry("table6-1", "Table 6.1: the rudi's eigenfrequencies", "ch6", table_6_1),
     Entry("ch6-why", "Why compliance lands better", "ch6", why, beyond=True),
+    Entry("ch6-gentle", "A rudi with an athlete's torques", "ch6", gentle, beyond=True),
 )

@@ -1,7 +1,9 @@
 """The rudi of chapter 6: its motion, and maps of how it lands from off-nominal starts.
 
 The motion is data (rudi.json), found by scripts/rudi.py; the thesis's own was programmed by hand
-and is not printed. Perturbed starts keep the nominal's angular momentum in space.
+and is not printed. Perturbed starts keep the nominal's angular momentum in space. A second motion
+is kept, with bounded joint torques (rudi_gentle.json): what is said of the nominal one can be
+asked of either.
 """
 
 from __future__ import annotations
@@ -28,38 +30,40 @@ THEIRS = 30.0  # rad/s, the thesis's best natural frequency
 _STEPS = 3000  # of a flight; the nominal takes some hundreds, and one in gimbal lock no end
 _ACCURACY = 1e-6
 Pose = Literal["wrap", "pike", "following"]
+Kept = Literal["rudi", "rudi_gentle"]
 
 
 @cache
-def _data() -> dict[str, Any]:
-    return json.loads((files("somersault.thesis") / "rudi.json").read_text())
+def data(kept: Kept = "rudi") -> dict[str, Any]:
+    """A motion as it is kept."""
+    return json.loads((files("somersault.thesis") / f"{kept}.json").read_text())
 
 
-def landing_time() -> float:
+def landing_time(kept: Kept = "rudi") -> float:
     """When the maneuver ends, s."""
-    return float(_data()["landing"])
+    return float(data(kept)["landing"])
 
 
 @cache
-def nominal_takeoff() -> Takeoff:
+def nominal_takeoff(kept: Kept = "rudi") -> Takeoff:
     """All joints prescribed, upright, at the thesis's 12.6 rad/s."""
     joints = {
         name: JointTakeoff("prescribed", times=tuple(path["times"]), angles=tuple(path["angles"]))
-        for name, path in _data()["joints"].items()
+        for name, path in data(kept)["joints"].items()
     }
-    return with_momentum(MODEL, Takeoff(spin=float(_data()["spin"]), joints=joints))
+    return with_momentum(MODEL, Takeoff(spin=float(data(kept)["spin"]), joints=joints))
 
 
 @cache
-def nominal() -> Flight:
+def nominal(kept: Kept = "rudi") -> Flight:
     """The nominal flight."""
-    return fly(MODEL, nominal_takeoff(), landing_time(), samples=801)
+    return fly(MODEL, nominal_takeoff(kept), landing_time(kept), samples=801)
 
 
 @cache
-def twist_rate() -> tuple[float, float]:
+def twist_rate(kept: Kept = "rudi") -> tuple[float, float]:
     """Greatest twist rate on the way, rad/s, and when, s."""
-    history = nominal().dataset
+    history = nominal(kept).dataset
     rate = np.abs(np.gradient(history["twist"].values, history["time"].values))
     return float(rate.max()), float(history["time"][int(rate.argmax())])
 
@@ -71,18 +75,20 @@ def scaled(takeoff: Takeoff, factor: float) -> Takeoff:
 
 
 @cache
-def strategy(frequency: float | None, pose: Pose = "wrap", tape: bool = True) -> Takeoff:
+def strategy(
+    frequency: float | None, pose: Pose = "wrap", tape: bool = True, kept: Kept = "rudi"
+) -> Takeoff:
     """Compliant at a natural frequency (rad/s), or prescribed where that is None.
 
     Gains are from the outboard inertias in the motion's own `pose`: in mid-twist (wrap), at
     takeoff (pike), or following it.
     """
     if frequency is None:
-        return nominal_takeoff()
+        return nominal_takeoff(kept)
     at: float | Literal["following"] = "following"
     if pose != "following":
-        at = 0.0 if pose == "pike" else twist_rate()[1]
-    return compliant(MODEL, nominal_takeoff(), frequency, pose=at, tape=tape)
+        at = 0.0 if pose == "pike" else twist_rate(kept)[1]
+    return compliant(MODEL, nominal_takeoff(kept), frequency, pose=at, tape=tape)
 
 
 def target(flight: Flight) -> dict[str, float]:
@@ -106,15 +112,16 @@ class Landings:
 
 
 def landings(
-    takeoff: Takeoff, points: int = 21, wanted: Mapping[str, float] | None = None
-) -> Landings:
+    takeoff: Takeoff, points: int = 21, wanted: Mapping[str, float] | None = None,
+    kept: Kept = "rudi",
+) -> Landings:  # fmt: skip
     """Flights from a grid of tilt and twist at takeoff, and the error e of section 6.3.2."""
     grid = {"from": -SPAN, "to": SPAN, "count": points}
-    told = Report(("landing_error",), target=wanted or target(nominal()))
+    told = Report(("landing_error",), target=wanted or target(nominal(kept)))
     found = ensemble(
         MODEL,
         takeoff,
-        landing_time(),
+        landing_time(kept),
         {
             "takeoff_tilt": Vary("takeoff.tilt", values=grid, unit="rad"),
             "takeoff_twist": Vary("takeoff.twist", values=grid, unit="rad"),
@@ -133,15 +140,15 @@ def landings(
 @cache
 def error_map(
     frequency: float | None, pose: Pose = "wrap", points: int = 21, factor: float = 1.0,
-    own: bool = False,
+    own: bool = False, kept: Kept = "rudi",
 ) -> Landings:  # fmt: skip
     """The map of a strategy, at `factor` times the momentum; the error against the nominal
     landing, or with `own` against the unperturbed one at that momentum."""
-    takeoff = scaled(strategy(frequency, pose), factor)
+    takeoff = scaled(strategy(frequency, pose, kept=kept), factor)
     if not own:
-        return landings(takeoff, points)
-    alone = fly(MODEL, takeoff, landing_time(), samples=2, accuracy=1e-8)
-    return landings(takeoff, points, target(alone))
+        return landings(takeoff, points, kept=kept)
+    alone = fly(MODEL, takeoff, landing_time(kept), samples=2, accuracy=1e-8)
+    return landings(takeoff, points, target(alone), kept)
 
 
 @cache
