@@ -138,9 +138,9 @@ def quaternion_from_angles(
     somersault: ArrayLike, tilt: ArrayLike, twist: ArrayLike, axes: Axes = AXES
 ) -> Array:
     """Unit quaternions (…, 4) from angles (…) in rad about `axes`; continuous in the angles."""
-    turned = side(axes) * np.asarray(somersault, float)
-    halves = np.broadcast_arrays(*(0.5 * np.asarray(x, float) for x in (turned, tilt, twist)))
+    halves = (0.5 * np.asarray(x, float) for x in (somersault, tilt, twist))
     (sf, cf), (st, ct), (sp, cp) = ((np.sin(x), np.cos(x)) for x in halves)
+    sf = side(axes) * sf
     vector = [
         cf * st * cp + sf * ct * sp,
         sf * ct * cp - cf * st * sp,
@@ -167,13 +167,14 @@ def angles_from_matrix(cosines: ArrayLike) -> Array:
 
 def body_rates(angles: ArrayLike, rates: ArrayLike, axes: Axes = AXES) -> Array:
     """ω (…, 3), rad/s in body axes, from (Φ, Θ, Ψ) and their rates (…, 3): eq. 2.4."""
-    _, tilt, twist = np.moveaxis(np.asarray(angles, float), -1, 0)
+    _, tilt, twist = np.ascontiguousarray(np.moveaxis(np.asarray(angles, float), -1, 0))
     somersaulting, tilting, twisting = np.moveaxis(np.asarray(rates, float), -1, 0)
     somersaulting = side(axes) * somersaulting
+    s, c = np.sin(twist), np.cos(twist)
     across = np.cos(tilt) * somersaulting
     omega = [
-        np.cos(twist) * tilting + np.sin(twist) * across,
-        -np.sin(twist) * tilting + np.cos(twist) * across,
+        c * tilting + s * across,
+        -s * tilting + c * across,
         twisting - np.sin(tilt) * somersaulting,
     ]
     return np.stack(from_sequence(omega, axes), -1)

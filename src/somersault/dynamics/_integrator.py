@@ -77,6 +77,7 @@ class Integrator:
         self._slope, self._gauge, self._watch, self._longest = slope, gauge, watch, longest
         watched = 0 if watch is None else watch.nnz_out(0)
         self._rows = _l.Rows(self.state, self.inputs - self.state - 1, watched)
+        self.outputs: int = self._rows.outputs
 
     @cached_property
     def _engine(self):  # must outlive the function taken from it
@@ -104,18 +105,17 @@ class Integrator:
         *,
         pieces: Pieces | None = None,
         first_step: float = _FIRST_STEP,
-        watched: Array | None = None,
         most_steps: int = MOST_STEPS,
     ) -> Solution:
-        """From `start` (N, n) at time 0 with `parameters` (N or 1, m), at `samples` (K,) or
-        (N, K), which do not fall.
+        """From `start` (N, n + w), states and what was watched before, at time 0 with `parameters`
+        (N or 1, m), at `samples` (K,) or (N, K), which do not fall.
 
         `tolerance` bounds each step's error in every state, relative to 1 + |state|; `end` (N,)
         ends flights before the last sample. Of parameters that change, `pieces` has the numbers
-        and the ends, and `parameters` the others. An event is found to rounding. `watched` (N, w)
-        is what was watched before. A flight that has taken `most_steps` ends.
+        and the ends, and `parameters` the others. An event is found to rounding. A flight that has
+        taken `most_steps` ends.
         """
-        count, outputs = len(start), self._rows.outputs
+        count, outputs = len(start), self.outputs
         samples = np.ascontiguousarray(np.atleast_2d(samples), float)
         if pieces is None:
             last = samples[:, -1] if end is None else end
@@ -123,9 +123,10 @@ class Integrator:
         ends = np.ascontiguousarray(np.minimum(pieces.ends, samples[:, -1:]))
         table = np.ascontiguousarray(pieces.parameters, float)
         still = np.ascontiguousarray(parameters, float)
-        first = np.ascontiguousarray(start if watched is None else np.hstack([start, watched]))
-        if table.shape[2] != self.changing or len(still.T) != self._rows.parameters - self.changing:
-            raise ValueError("not the parameters of these equations")
+        first = np.ascontiguousarray(start, float)
+        lasting = self._rows.parameters - self.changing
+        if (table.shape[2], still.shape[1], first.shape[1]) != (self.changing, lasting, outputs):
+            raise ValueError("not the parameters, or not the states, of these equations")
         out = np.empty((count, samples.shape[1], outputs))
         told = np.empty((count, outputs + _lanes.LAST_MORE))
         following = np.zeros(1, np.int64)

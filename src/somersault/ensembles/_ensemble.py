@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MOST = 10**9  # chunks, threads or workers
-_CHUNK = 65_536  # flights
+_CHUNK = 131_072  # flights
 _LEAST_CHUNK = 8_192
 _PARTS = 8  # that a small ensemble is cut into
 _CHUNK_BYTES = 2**26

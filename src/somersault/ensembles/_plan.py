@@ -34,7 +34,7 @@ SAMPLE = "sample"
 MOST_FLIGHTS = 10**11
 MOST_SEED = 2**63 - 1
 _MOST_LISTED = 1_000
-_TOGETHER = 65_536  # flights whose numbers are held at once,
+_TOGETHER = 16_384  # flights whose numbers are held at once,
 _TOGETHER_BYTES = 2**26  # or as many as these hold
 _NAME = re.compile(r"\w[\w-]*")  # of an array in a store, and of a word in its attributes
 _ENGINES = ("somersault", "casadi", "llvmlite", "numpy", "scipy")
@@ -144,8 +144,12 @@ class Plan:
 
         Each flight's numbers depend on nothing but its own place.
         """
-        edges = [*range(first, last, self._together), last]
-        parts = [self._fly(a, b) for a, b in pairwise(edges)]
+        given = self.varied(first, last)
+        edges = [*range(0, last - first, self._together), last - first]
+        parts = [
+            self._fly({name: x[a:b] for name, x in given.items()}, b - a)
+            for a, b in pairwise(edges)
+        ]
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
     @cached_property
@@ -159,9 +163,9 @@ class Plan:
         doubles += 2 * pieces * chosen.symbols.changing  # where each has paths of its own
         return min(_TOGETHER, max(_TOGETHER_BYTES // (8 * doubles), 64))
 
-    def _fly(self, first: int, last: int) -> dict[str, Array]:
-        count, chosen = last - first, self.system
-        given = self.varied(first, last)
+    def _fly(self, given: Mapping[str, Array], count: int) -> dict[str, Array]:
+        """The variables of flights whose varied quantities are `given`."""
+        chosen = self.system
         values = moved(self.values, self.vary, self.targets, given)
         good = sound(self.joints, values, count)
         if not good.all():  # stand-ins, which are struck out again
@@ -172,11 +176,12 @@ class Plan:
             }
         begun = starts(chosen, self.takeoff, self.joints, values, count)
         course = course_of(chosen, self.takeoff, self.joints, begun, self.duration)
-        state = chosen.start(begun.quaternion, begun.omega, begun.q, begun.u)
-        watched = _report.first_watched(self.report, chosen, begun.angles, state, course)
+        first = chosen.start(begun.quaternion, begun.omega, begun.q, begun.u)
+        states, watched = np.split(first, [chosen.state], 1)
+        watched[:] = _report.first_watched(self.report, chosen, begun.angles, states, course)
         times = self.report.times(self.duration)
         tolerance = self.accuracy * TOLERANCE_PER_ACCURACY
-        found = course.solve(state, times, tolerance, watched, self.steps)
+        found = course.solve(first, times, tolerance, self.steps)
         return _report.told(self.report, chosen, course, found, begun.angles, good, times)
 
     @cached_property

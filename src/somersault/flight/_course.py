@@ -93,14 +93,12 @@ class Course:
         return np.concatenate([self._now(times), still], 2)
 
     def solve(
-        self, first: Array, samples: Array, tolerance: float, watched: Array | None = None,
-        most_steps: int = MOST_STEPS,
+        self, first: Array, samples: Array, tolerance: float, most_steps: int = MOST_STEPS,
     ) -> Solution:  # fmt: skip
-        """From states `first` (N, n), with states at `samples` (K,) or (N, K)."""
+        """From rows of `System.start`, with states at `samples` (K,) or (N, K)."""
         pieces = Pieces(self.knots[:, 1:], self._now(self.knots[:, :-1]))
         return self._system.integrator.solve(
-            first, self._still, samples, tolerance, pieces=pieces, watched=watched,
-            most_steps=most_steps,
+            first, self._still, samples, tolerance, pieces=pieces, most_steps=most_steps,
         )  # fmt: skip
 
 

@@ -112,10 +112,10 @@ def momentum(system: System, begun: Starts) -> Array:
 
 def _attitude(takeoff: Takeoff, values: Numbers, count: int, axes: Axes) -> tuple[Array, Array]:
     if takeoff.quaternion is None:
-        angles = row(values, [("takeoff", n) for n in ("somersault", "tilt", "twist")], count)
-        # Each angle by itself, in one piece: the same arithmetic however many there are.
-        one, two, three = (np.ascontiguousarray(x) for x in angles.T)
-        return quaternion_from_angles(one, two, three, axes), angles
+        names: list[Name] = [("takeoff", n) for n in ("somersault", "tilt", "twist")]
+        somersault, tilt, twist = (values[name] for name in names)
+        quaternion = quaternion_from_angles(somersault, tilt, twist, axes)
+        return np.broadcast_to(quaternion, (count, 4)), row(values, names, count)
     given = np.asarray(takeoff.quaternion, float)
     given = given / np.abs(given).max()
     given = given / np.linalg.norm(given)

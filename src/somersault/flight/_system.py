@@ -93,12 +93,15 @@ class System:
         )
 
     def start(self, quaternion: Array, omega: Array, q: Array, u: Array) -> Array:
-        """State vectors (N, state) from full joint coordinates and speeds."""
+        """States from full joint coordinates and speeds, (N, state), with room behind them for
+        what is watched, (N, state + watched)."""
         q_keep, u_keep = self._kept()
         parts = [quaternion]
         if not self.symbols.bound:
             parts += [omega, q[:, q_keep], u[:, u_keep]]
-        return np.concatenate(parts, 1)
+        rows = np.empty((len(quaternion), self.integrator.outputs))
+        np.concatenate(parts, 1, out=rows[:, : self.state])
+        return rows
 
     def _kept(self) -> tuple[list[int], list[int]]:
         q_keep: list[int] = []
