@@ -179,8 +179,8 @@ def search(landing: float, seed: int, generations: int = 350):
 # these are a strong man's; the torso's, and the hips' to the side, are assumed.
 BOUNDS = {"hip": 250.0, "shoulder": 150.0, "torso": 150.0, "elbow": 70.0}
 TIMES = (1.0, 1.5, 2.0)  # the bounds
-KEPT = 0.99  # of a bound: the search sees torques at samples only
-SAMPLES, FINE = 81, 401  # of a flight: some peaks lie between the former
+KEPT = 0.98  # of a bound: the search sees torques at samples only
+SAMPLES, FINE = 81, 801  # of a flight: some peaks lie between the former
 WITHIN = 0.02  # rad of somersault and twist, and of tilt, that is as good as none at landing
 GENTLE_NUMBERS = NUMBERS | {
     "landing": (0.8, 1.1),

@@ -20,7 +20,7 @@ _FREQUENCIES = (15.0, 17.0, 19.0, 21.0, 24.0, 28.0, 37.0, 60.0, 200.0)
 _COARSE = 7  # points a side in the scan
 _TILT = 0.05  # rad at landing that is small
 _RATE = 40.2  # rad/s, the thesis's greatest twist rate
-OVER = 1.01  # times a bound that the torques reach at most
+OVER = 1.0
 _WHERE = "§6.3.3, Figure 6-3"
 
 
