@@ -296,7 +296,7 @@ def on_dask(workers: int, made: Plan, most: int, chunks: int, store: Path, seen:
         before, own = _seconds(theirs), time.process_time()
         governed, wanted = _seconds([scheduler]), _wanted(theirs)
         begun = time.perf_counter()
-        for _ in _cluster._flown(client, shared, cut, which, put, path, 1):
+        for _ in _cluster._flown(client, shared, cut, which, put, path, 1, made.engines):
             pass
         taken = time.perf_counter() - begun
         own, used = time.process_time() - own, _seconds(theirs) - before

@@ -70,7 +70,7 @@ def test_the_gentle_motion_keeps_its_bounds_and_a_margin_to_the_limits() -> None
     found, flight = rudi.data("rudi_gentle"), rudi.nominal("rudi_gentle")
     assert found["bounds"] == _script().BOUNDS
     peaks = gentle.peaks()
-    assert all(peaks[group] <= gentle.OVER * bound for group, bound in found["bounds"].items())
+    assert all(peaks[group] <= bound for group, bound in found["bounds"].items())
     assert abs(flight.landing.tilt) < 0.05
     assert flight.landing.somersault == pytest.approx(2 * np.pi, abs=0.03)
     assert abs(flight.landing.twist) == pytest.approx(3 * np.pi, abs=0.03)
