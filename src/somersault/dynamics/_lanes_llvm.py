@@ -108,7 +108,7 @@ define internal void @piece(ptr %job, ptr %x, ptr %z, i64 %lane, i64 %flight, i6
 
 
 def _keep(rows: Rows) -> str:
-    """keep(x, lane, to): what a lane hands back, into a row."""
+    """keep(…): what a lane hands back, into a row; show(…): into the one of a sample."""
     return f"""
 define internal void @keep(ptr %x, i64 %lane, ptr %to) {{
   %state = getelementptr double, ptr %x, i64 %lane
@@ -117,6 +117,16 @@ define internal void @keep(ptr %x, i64 %lane, ptr %to) {{
   %watched.row = getelementptr double, ptr %x, i64 {rows.before_watched * LANES}
   %watched = getelementptr double, ptr %watched.row, i64 %lane
   call void @copy(ptr %after, i64 1, ptr %watched, i64 {LANES}, i64 {rows.watched})
+  ret void
+}}
+
+define internal void @show(ptr %job, ptr %x, i64 %lane, i64 %flight, i64 %sample) {{
+{_job("out", OUT, "ptr")}{_job("k", SAMPLE_COUNT)}
+  %row = mul i64 %flight, %k
+  %at = add i64 %row, %sample
+  %place = mul i64 %at, {rows.outputs}
+  %to = getelementptr double, ptr %out, i64 %place
+  call void @keep(ptr %x, i64 %lane, ptr %to)
   ret void
 }}
 """
@@ -144,7 +154,7 @@ entry:
   %left = alloca i64
   store i64 0, ptr %left
 {_job("when", SAMPLES, "ptr")}{_job("whenby", SAMPLES_BY)}{_job("k", SAMPLE_COUNT)}
-{_job("out", OUT, "ptr")}{_job("ends", ENDS, "ptr")}{_job("endsby", ENDS_BY)}{_job("p", PIECES)}
+{_job("ends", ENDS, "ptr")}{_job("endsby", ENDS_BY)}{_job("p", PIECES)}
   %status = load double, ptr %status.p
   %empty = fcmp oeq double %status, {_scalar(one.EMPTY)}
   br i1 %empty, label %fetch, label %look
@@ -166,11 +176,7 @@ due:
   %reached = fcmp oge double %time, %ts
   br i1 %reached, label %show, label %ending
 show:
-  %row = mul i64 %flight, %k
-  %at = add i64 %row, %s
-  %place = mul i64 %at, {rows.outputs}
-  %to = getelementptr double, ptr %out, i64 %place
-  call void @keep(ptr %x, i64 %lane, ptr %to)
+  call void @show(ptr %job, ptr %x, i64 %lane, i64 %flight, i64 %s)
   %s.next = add i64 %s, 1
   store i64 %s.next, ptr %sample.p
   br label %sample
@@ -208,11 +214,7 @@ rest:
   %more = icmp slt i64 %r, %k
   br i1 %more, label %fill, label %final.row
 fill:
-  %fill.row = mul i64 %whose, %k
-  %fill.at = add i64 %fill.row, %r
-  %fill.place = mul i64 %fill.at, {rows.outputs}
-  %fill.to = getelementptr double, ptr %out, i64 %fill.place
-  call void @keep(ptr %x, i64 %lane, ptr %fill.to)
+  call void @show(ptr %job, ptr %x, i64 %lane, i64 %whose, i64 %r)
   %r.next = add i64 %r, 1
   br label %rest
 final.row:
