@@ -146,6 +146,7 @@ def _of_the_maps(
         number(
             "gentle.half", _WHERE, "share of the starts that lands with small errors at the best "
             "ω_n: nearly half", 0.5, soft.share, "1", 0.2,
+            "More than half of this motion's starts do: how many is each motion's own.",
         ),
     )  # fmt: skip
 
