@@ -47,8 +47,7 @@ class Solution:
 @dataclass(frozen=True)
 class Pieces:
     """Parameters that change on the way: row p of `parameters` (N or 1, P, c) until `ends`
-    (N or 1, P), s, which do not fall; a flight is over with its last piece. The slope must not
-    jump where they change: a step begins with the slope that the one before it ended with."""
+    (N or 1, P), s, which do not fall; a flight is over with its last piece."""
 
     ends: Array
     parameters: Array

@@ -34,7 +34,7 @@ def module(equations: str, rows: Rows, changing: int, event: bool) -> str:
     SAMPLE_COUNT, outputs) receives what there is at each of SAMPLES[i · SAMPLES_BY …], or was at
     the end of a flight that ended before, and LAST (COUNT, outputs + 3) what there is at the end,
     when that was, the status and the steps. NEXT is the flight that is next, and the only thing
-    that threads share. The slope does not jump from one piece to the next.
+    that threads share.
     """
     return "\n".join(
         [HEADER, equations, _COPY, _parameters(rows, changing), _keep(rows), _serve(rows),
@@ -197,6 +197,7 @@ following:
 change:
   store i64 %piece.next, ptr %piece.p
   call void @piece(ptr %job, ptr %x, ptr %z, i64 %lane, i64 %flight, i64 %piece.next)
+  store i64 {_SLOPE}, ptr %left
   br label %sample
 go:
   %sooner = fcmp olt double %sample.time, %end
