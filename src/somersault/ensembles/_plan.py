@@ -157,10 +157,13 @@ class Plan:
         chosen, report = self.system, self.report
         rows = 3 + 2 * len(report.extremes) + chosen.state
         samples = report.samples if report.history else 0
-        pieces = sum(len(plan.times) for plan in self.joints)
         doubles = 12 * (rows + chosen.parameters)
         doubles += samples * (3 * rows + 2 * chosen.parameters)
-        doubles += 2 * pieces * chosen.symbols.changing  # where each has paths of its own
+        moved = {target.name[0] for group in self.targets.values() for target in group}
+        if moved & {"times", "angles", "angle"}:  # each flight has paths of its own, and a tape
+            one = starts(chosen, self.takeoff, self.joints, self.values, 1)
+            course = course_of(chosen, self.takeoff, self.joints, one, self.duration)
+            doubles += 6 * course.knots.shape[1] * chosen.symbols.changing
         return min(_TOGETHER, max(_TOGETHER_BYTES // (8 * doubles), 64))
 
     def _fly(self, given: Mapping[str, Array], count: int) -> dict[str, Array]:

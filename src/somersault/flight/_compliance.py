@@ -16,6 +16,7 @@ import numpy as np
 from somersault._array import Array
 from somersault._errors import SomersaultError
 from somersault._given import truth
+from somersault.attitude import matrix_from_quaternion
 from somersault.dynamics import Equations
 from somersault.flight._columns import rotation_vector
 from somersault.flight._numbers import number
@@ -90,9 +91,10 @@ def compliant(
             following=following, stop_stiffness=stop_stiffness if stopped else 0.0,
             stop_damping=stop_damping if stopped else 0.0,
         )  # fmt: skip
+    to_body = matrix_from_quaternion(begun.quaternion).T
     return replace(
         _with_momentum(takeoff, begun.momentum),
-        tape=tuple(begun.omega.tolist()) if tape else None,
+        tape=tuple((to_body @ begun.momentum).tolist()) if tape else None,
         joints=setups,
     )
 

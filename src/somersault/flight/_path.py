@@ -52,7 +52,12 @@ class Path:
 
     def at(self, times: Array) -> tuple[Array, Array]:
         """Origins (N, K) and coefficients (N, K, 6) that hold at times (N, K), and after them."""
-        place = (self.knots[..., None, :] <= times[..., None]).sum(-1)
+        if self.knots.ndim == 1:
+            place = np.searchsorted(self.knots, times, side="right")
+        else:
+            place = np.zeros(np.broadcast_shapes(times.shape, (len(self.knots), 1)), int)
+            for knots in self.knots.T:
+                place += knots[:, None] <= times
         rows = np.arange(len(self.knots))[:, None] if self.knots.ndim > 1 else 0
         knots, coefficients = np.atleast_2d(self.knots), self.coefficients
         coefficients = coefficients if coefficients.ndim > 2 else coefficients[None]

@@ -63,9 +63,9 @@ class Takeoff:
     `spin` (rad/s about the inertial axis of somersault, the rate of the nominal steady spin:
     Φ̇ = spin, and Θ̇ and Ψ̇ are `tilt_rate` and `twist_rate`, whatever the attitude),
     `angular_velocity` (body axes) or `angular_momentum` (inertial axes, kg m²/s).
-    `velocity` is that of the centre of mass (m/s). `tape` is the angular velocity (body axes) at
-    takeoff of the nominal flight whose joint torques are replayed to compliant joints: that of
-    the same paths, exactly followed.
+    `velocity` is that of the centre of mass (m/s). `tape` is the angular momentum (body
+    axes, kg m²/s) at takeoff of the nominal flight whose joint torques are replayed to compliant
+    joints: that of the same paths, exactly followed.
     """
 
     somersault: float = 0.0

@@ -1,18 +1,20 @@
 """The motor tape: the joint torques of the nominal flight, against time.
 
 It is recorded from the flight that follows the paths exactly: torques by inverse dynamics at
-Chebyshev points of short pieces, kept as the polynomials through them. Pieces are so short
-that what is left out is hardly more than rounding.
+Chebyshev points of short pieces, kept as the polynomials through them. A piece is halved until
+what is left out is hardly more than rounding, in each flight by itself.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
-from functools import lru_cache
+from dataclasses import dataclass, replace
+from functools import cache, lru_cache
 
+import casadi as ca
 import numpy as np
 
 from somersault._array import Array
+from somersault.dynamics import Kernel
 from somersault.flight._columns import Numbers, numbers
 from somersault.flight._course import Course
 from somersault.flight._path import TAPE_DEGREE, Path
@@ -22,8 +24,10 @@ from somersault.flight._takeoff import JointPlan, Takeoff, kinds
 from somersault.model import Model
 
 _TOLERANCE = 1e-13  # of each step of the nominal flight
-_LEFT_OUT = 1e-11  # of the greatest torque: what the last coefficients may be
-_LONGEST, _SHORTEST = 0.1, 1e-3  # s of a piece
+_LEFT_OUT = 1e-11  # of a piece's greatest torque: what the last coefficients may be,
+_LITTLE = 1e-4  # where that is more than so much of the flight's
+_LONGEST, _SHORTEST = 0.1, 1e-6  # s of a piece
+_AT_ONCE = 2**22  # numbers that a recording of many flights holds
 _COUNT = TAPE_DEGREE + 1
 _ANGLES = np.pi * (np.arange(_COUNT) + 0.5) / _COUNT
 _POINTS = 0.5 - 0.5 * np.cos(_ANGLES)  # within a piece, 0 to 1
@@ -39,54 +43,121 @@ def course(
         replace(plan, motion="prescribed", following=False, stops=()) if plan.on_path else plan
         for plan in plans
     )
-    omega = tuple(float(x) for x in takeoff.tape)
-    length, edges, torques = _nominal(chosen.model, nominal, omega, duration)
+    momentum = tuple(float(x) for x in takeoff.tape)
+    tape = _nominal(chosen.model, nominal, momentum, duration)
     values = {n: x for n, x in begun.values.items() if n[0] in ("times", "angles", "angle")}
     if any(isinstance(x, np.ndarray) for x in values.values()):
-        count = len(begun.q)
-        edges, torques = _recorded(chosen.model, nominal, omega, values, count, duration, length)
+        motion = _Motion(chosen.model, nominal, momentum, duration)
+        tape = _each(motion, values, len(begun.q), tape)
     played = [
         chosen.model.speed_slice(plan.joint.name).start
         for plan in plans
         if plan.motion == "compliant"
     ]
-    return Course(chosen, plans, begun, duration, _tape(edges, torques[..., played]))
+    return Course(chosen, plans, begun, duration, tape.path(played))
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """What flights that are recorded have in common; `momentum` is that at takeoff, body axes."""
+
+    model: Model
+    plans: tuple[JointPlan, ...]
+    momentum: tuple[float, ...]
+    duration: float
+
+
+@dataclass(frozen=True)
+class _Tape:
+    """Edges of pieces (N, P + 1), some of no length, and the powers of the time since each began
+    (N, P, joint speeds, powers)."""
+
+    edges: Array
+    powers: Array
+
+    def path(self, played: list[int]) -> Path:
+        """The torques at some joint speeds side by side; before and after they hold."""
+        powers, spans = self.powers[:, :, played], np.diff(self.edges)
+        last = spans.shape[1] - 1 - np.argmax(spans[:, ::-1] > 0, 1)
+        rows = np.arange(len(last))
+        scale = spans[rows, last, None, None] ** np.arange(_COUNT)
+        before, after = np.zeros((2, len(rows), 1, len(played), _COUNT))
+        before[..., 0] = powers[:, :1, :, 0]
+        after[:, 0, :, 0] = (powers[rows, last] * scale).sum(-1)
+        whole = np.concatenate([before, powers, after], 1)
+        return Path(self.edges, whole.reshape(*whole.shape[:2], -1))
 
 
 @lru_cache(maxsize=64)
 def _nominal(
-    model: Model, plans: tuple[JointPlan, ...], omega: tuple[float, ...], duration: float
-) -> tuple[float, Array, Array]:
-    """How long pieces may be, and what is recorded with them. Flights whose motions differ from
-    this one in numbers have pieces of the same length."""
-    length = _LONGEST
-    while True:
-        edges, torques = _recorded(model, plans, omega, {}, 1, duration, length)
-        last = _combined(_TO_SERIES[-2:], torques)
-        most = np.abs(torques).max(initial=0.0)
-        if np.abs(last).max(initial=0.0) <= _LEFT_OUT * most or length < _SHORTEST:
-            return length, edges, torques
-        length /= 2
+    model: Model, plans: tuple[JointPlan, ...], momentum: tuple[float, ...], duration: float
+) -> _Tape:
+    """The tape where nothing is varied."""
+    return _exact(_Motion(model, plans, momentum, duration), {}, 1, _LONGEST)
 
 
-def _recorded(
-    model: Model, plans: tuple[JointPlan, ...], omega: tuple[float, ...], values: Numbers,
-    count: int, duration: float, length: float,
-) -> tuple[Array, Array]:  # fmt: skip
-    """Edges (count, P + 1) of pieces no longer than `length`, and the torques at their points,
-    (count, P, points, joint speeds)."""
-    own, alone = system(model, kinds(plans), None), Takeoff(angular_velocity=omega)
+def _each(motion: _Motion, values: Numbers, count: int, nominal: _Tape) -> _Tape:
+    """The tapes of many flights, in pieces as long as the nominal one's or shorter."""
+    length = float(np.diff(nominal.edges).max())
+    # Of a flight: what inverse dynamics is given, in twice as many pieces.
+    size = 2 * nominal.powers.shape[1] * _COUNT * (8 * len(motion.plans) + 20)
+    parts = []
+    for some in np.array_split(np.arange(count), -(-count * size // _AT_ONCE)):
+        own = {n: x[some] if isinstance(x, np.ndarray) else x for n, x in values.items()}
+        parts.append(_exact(motion, own, len(some), length))
+    pieces = max(part.powers.shape[1] for part in parts)
+    whole = _Tape(
+        np.full((count, pieces + 1), motion.duration),
+        np.zeros((count, pieces, *parts[0].powers.shape[2:])),
+    )
+    first = 0
+    for part in parts:
+        last = first + len(part.edges)
+        whole.edges[first:last, : part.edges.shape[1]] = part.edges
+        whole.powers[first:last, : part.powers.shape[1]] = part.powers
+        first = last
+    return whole
+
+
+def _exact(motion: _Motion, values: Numbers, count: int, length: float) -> _Tape:
+    """The tapes of some flights, in pieces no longer than `length`."""
+    plans, alone = motion.plans, Takeoff(angular_momentum=motion.momentum)
+    own = system(motion.model, kinds(plans), None)
     begun = starts(own, alone, plans, {**numbers(alone, plans), **values}, count)
-    flight = Course(own, plans, begun, duration)
-    edges = _divided(flight.knots, length)
-    times = edges[:, :-1, None] + np.diff(edges)[..., None] * _POINTS
-    times = np.minimum(times.reshape(len(edges), -1), duration)
+    flight = Course(own, plans, begun, motion.duration)
     first = own.start(begun.quaternion, begun.omega, begun.q, begun.u)
+    knots = np.broadcast_to(flight.knots, (count, flight.knots.shape[1]))
+    edges = _divided(knots, length)
+    while True:
+        tape, left_out = _recorded(own, flight, first, edges)
+        again = left_out & (np.diff(edges) > _SHORTEST)
+        if not again.any():
+            return tape
+        middle = 0.5 * (edges[:, 1:] + edges[:, :-1])
+        edges = np.concatenate([edges, np.where(again, middle, motion.duration)], 1)
+        edges = np.sort(edges, 1)
+        # What only fills up a row may go where it does in all rows.
+        edges = edges[:, : (edges < motion.duration).sum(1).max() + 1]
+
+
+def _recorded(own: System, flight: Course, first: Array, edges: Array) -> tuple[_Tape, Array]:
+    """Tapes in pieces between edges (N, P + 1), and which pieces leave too much out, (N, P)."""
+    count, spans = len(edges), np.diff(edges)
+    times = (edges[:, :-1, None] + spans[..., None] * _POINTS).reshape(count, -1)
+    times = np.minimum(times, flight.duration)
     found = flight.solve(first, times, _TOLERANCE)
-    many = np.broadcast_to(times, (count, times.shape[1]))
-    x = np.concatenate([found.states, many[..., None], flight.parameters(many)], 2)
-    torques = own.loads(x)[..., 6:]
-    return edges, torques.reshape(count, -1, _COUNT, torques.shape[-1])
+    parameters = np.repeat(flight.parameters(edges[:, :-1]), _COUNT, 1)
+    torques = own.loads(np.concatenate([found.states, times[..., None], parameters], 2))[..., 6:]
+    torques = torques.reshape(count, -1, _COUNT, torques.shape[-1]).swapaxes(2, 3)
+    series = _polynomials()(torques)
+    scale = spans[..., None, None] ** np.arange(_COUNT)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        powers = series[..., :_COUNT] / scale
+    powers = np.where(np.isfinite(powers), powers, 0.0)  # of pieces of next to no length
+    most = np.abs(torques).max((2, 3))
+    most = np.maximum(most, _LITTLE * most.max(1, keepdims=True))
+    left_out = np.abs(series[..., _COUNT:]).max((2, 3)) > _LEFT_OUT * most
+    return _Tape(edges, powers), left_out & (spans > 0)
 
 
 def _divided(knots: Array, length: float) -> Array:
@@ -104,36 +175,21 @@ def _divided(knots: Array, length: float) -> Array:
     return np.concatenate(edges, 1)
 
 
-def _tape(edges: Array, torques: Array) -> Path:
-    """The polynomials through torques (N, P, points, joints), side by side for all joints."""
-    span = np.diff(edges)[..., None, None]
-    scale = span ** np.arange(_COUNT)[:, None]
-    with np.errstate(divide="ignore", invalid="ignore"):  # pieces of no length
-        powers = _combined(_TO_POWERS, _combined(_TO_SERIES, torques)) / scale
-    powers = np.where(span > 0, powers, 0.0)
-    before, after = np.zeros_like(powers[:, :1]), np.zeros_like(powers[:, :1])
-    before[:, 0, 0] = powers[:, 0, 0]
-    after[:, 0, 0] = (powers[:, -1] * scale[:, -1]).sum(-2)
-    whole = np.concatenate([before, powers, after], 1).swapaxes(-1, -2)
-    return Path(edges, whole.reshape(*whole.shape[:2], -1))
+@cache
+def _polynomials() -> Kernel:
+    """From values at the points of a piece to the powers of its time, 0 to 1, and then the last two
+    coefficients of the Chebyshev polynomials between.
 
-
-def _combined(matrix: Array, values: Array) -> Array:
-    """matrix (m, n) times values (…, n, joints), in one order of adding."""
-    return np.stack([sum(w * values[..., k, :] for k, w in enumerate(r)) for r in matrix], -2)
-
-
-def _powers_of_series() -> Array:
-    """Powers of u (rows) in the Chebyshev polynomials of 2 u − 1 (columns)."""
-    found = np.zeros((_COUNT, _COUNT))
-    found[0, 0], found[:2, 1] = 1.0, (-1.0, 2.0)
+    Compiled, so that a flight's digits do not depend on how many there are.
+    """
+    to_series = 2 / _COUNT * np.cos(np.outer(np.arange(_COUNT), np.pi - _ANGLES))
+    to_series[0] /= 2
+    to_powers = np.zeros((_COUNT, _COUNT))  # of the Chebyshev polynomials of 2 u − 1, by columns
+    to_powers[0, 0], to_powers[:2, 1] = 1.0, (-1.0, 2.0)
     for k in range(2, _COUNT):
-        found[1:, k] = 4 * found[:-1, k - 1]
-        found[:, k] -= 2 * found[:, k - 1] + found[:, k - 2]
-    return found
-
-
-# From values at the points to the coefficients of Chebyshev polynomials, and on to powers.
-_TO_SERIES = 2 / _COUNT * np.cos(np.outer(np.arange(_COUNT), np.pi - _ANGLES))
-_TO_SERIES[0] /= 2
-_TO_POWERS = _powers_of_series()
+        to_powers[1:, k] = 4 * to_powers[:-1, k - 1]
+        to_powers[:, k] -= 2 * to_powers[:, k - 1] + to_powers[:, k - 2]
+    values = ca.SX.sym("values", _COUNT)
+    series = ca.DM(to_series) @ values
+    both = ca.vertcat(ca.DM(to_powers) @ series, series[-2:])
+    return Kernel(ca.Function("polynomials", [values], [ca.densify(both)]))
