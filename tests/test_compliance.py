@@ -379,3 +379,37 @@ def test_the_tape_is_the_nominal_bodys() -> None:
     light, heavy = torques
     np.testing.assert_array_equal(light, heavy)
     assert np.abs(light).max() > 0.01
+
+
+# ---------------------------------------------------------------------------- off-nominal starts
+
+
+def test_an_off_nominal_start_keeps_momentum_and_tape() -> None:
+    soft = compliant()
+    off = so.off_nominal(GYMNAST, soft, tilt=-0.1, twist=0.07)
+    assert off == leant(soft)
+    assert off.tape == soft.tape
+    assert off.angular_momentum == soft.angular_momentum
+    exact = so.off_nominal(GYMNAST, prescribed(), somersault=0.2)
+    nominal = so.with_momentum(GYMNAST, prescribed())
+    assert exact == replace(nominal, somersault=nominal.somersault + 0.2)
+
+
+def test_a_first_angle_that_is_varied_has_the_tape_of_the_varied_motion() -> None:
+    """On its tape alone a compliant flight is the prescribed one, with the momentum it has."""
+    name = next(iter(compliant().joints))
+    vary = {"bent": so.Vary(adds_to=f"joints.{name}.angles.1", samples=[0.0, 0.05, 0.2])}
+    options = {"size": 3, "report": ["somersault", "tilt", "twist"], "accuracy": 1e-10}
+    exact, soft = (
+        so.ensemble(GYMNAST, begun, SECONDS, vary, **options).dataset
+        for begun in (so.with_momentum(GYMNAST, prescribed()), compliant())
+    )
+    assert np.ptp(exact["twist"].values) > 1e-3
+    for quantity in ("somersault", "tilt", "twist"):
+        np.testing.assert_allclose(soft[quantity], exact[quantity], rtol=0, atol=1e-8)
+
+
+def test_off_nominal_starts_need_angles() -> None:
+    turned = Takeoff(quaternion=(1, 0, 0, 0), angular_momentum=(0, 1, 0))
+    with pytest.raises(SomersaultError, match="needs angles"):
+        so.off_nominal("book", turned, tilt=0.1)

@@ -384,3 +384,11 @@ def test_neighbours_do_not_matter(whole: Solution) -> None:
     back = np.argsort(order)
     again = Solution(*(getattr(mixed, field.name)[back] for field in fields(Solution)))
     same(again, whole, 361)
+
+
+def test_the_last_step_that_is_allowed_may_be_the_one_that_arrives() -> None:
+    start, rate = np.ones((1, 2)), np.array([[10.0]])
+    needed = int(plain_oscillator().solve(start, rate, np.array([3.0]), 1e-12).steps[0])
+    for limit, ended in ((needed, "duration"), (needed - 1, "too many steps")):
+        found = plain_oscillator().solve(start, rate, np.array([3.0]), 1e-12, most_steps=limit)
+        assert STATUS[found.status[0]] == ended

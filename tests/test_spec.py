@@ -205,3 +205,26 @@ def test_a_pair_and_its_side_are_still_one_too_many(recording: Path) -> None:
     (recording / "spec.toml").write_text(RECORDED + own)
     with pytest.raises(so.SomersaultError, match="left_elbow is given twice"):
         read_spec(recording / "spec.toml")
+
+
+def test_an_off_nominal_start_is_that_of_python(tmp_path: Path) -> None:
+    """The tape is that of the takeoff, and not of the start that is off it."""
+    text = """
+    model = "furrer"
+    [takeoff]
+    spin = 8.64
+    [joints.left_shoulder]
+    motion = "prescribed"
+    times = [0.1, 0.4]
+    angles = [1.4, 0.5]
+    [compliance]
+    natural_frequency = 20
+    pose = 0.1
+    """
+    (tmp_path / "nominal.toml").write_text(text)
+    (tmp_path / "off.toml").write_text(text + "[off_nominal]\ntilt = 0.05\n")
+    nominal, off = (read_spec(tmp_path / f"{name}.toml").takeoff for name in ("nominal", "off"))
+    assert off == so.off_nominal("furrer", nominal, tilt=0.05)
+    (tmp_path / "off.toml").write_text(text + "[off_nominal]\nlean = 0.05\n")
+    with pytest.raises(SomersaultError, match="off_nominal.lean"):
+        read_spec(tmp_path / "off.toml")

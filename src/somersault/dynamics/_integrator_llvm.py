@@ -154,6 +154,10 @@ def step(rows: Rows, event: bool, tolerance: str, limit: str) -> tuple[str, str]
     if search:
         accepted, status = search.after(good, taken, status)
     _next_length(t, flying, good, clipped, squared, taken, length)
+    # The last step lands on its end exactly, whatever rounding adds.
+    arrived = t.where(clipped, until, t.two("fadd", time, taken))
+    now = t.where(accepted, arrived, time)
+    short_of = t.test("olt", now, until)
     steps = t.load("%c", STEPS)
     steps = t.where(flying, t.two("fadd", steps, number(1.0)), steps)
     t.store("%c", STEPS, steps)
@@ -161,22 +165,23 @@ def step(rows: Rows, event: bool, tolerance: str, limit: str) -> tuple[str, str]
     short = t.test("olt", t.load("%c", STEP), t.two("fmul", size, number(_SHORTEST)))
     short = t.both(t.both(flying, t.neither(good)), short)
     status = t.where(short, number(BROKEN), status)
-    full = t.both(t.test("oeq", status, number(FLYING)), t.test("oge", steps, limit))
+    # Who is there with the last of them is not one too many, but one more would be.
+    full = t.both(t.test("oge", steps, limit), short_of)
+    full = t.both(
+        t.test("oeq", status, number(FLYING)), t.either(full, t.test("ogt", steps, limit))
+    )
     status = t.where(full, number(TOO_MANY_STEPS), status)
     t.store("%c", STATUS, status)
-    # The last step lands on its end exactly, whatever rounding adds.
-    arrived = t.where(clipped, until, t.two("fadd", time, taken))
     if rows.watched:
         for row, value in enumerate(_watched(t, rows, time, arrived), rows.before_watched):
             t.store("%x", row, t.where(accepted, value, t.load("%x", row)))
-    now = t.where(accepted, arrived, time)
     t.store("%c", TIME, now)
     t.store("%x", rows.state, now)
     for row in range(rows.state):
         t.store("%x", row, t.where(accepted, new[row], t.load("%x", row)))
         slope = t.where(accepted, t.load("%k", 12 * rows.state + row), t.load("%k", row))
         t.store("%k", row, slope)
-    there = t.both(t.test("oeq", status, number(FLYING)), t.test("uge", now, until))
+    there = t.both(t.test("oeq", status, number(FLYING)), t.neither(short_of))
     over = t.both(t.test("ogt", status, number(FLYING)), t.test("olt", status, number(SEARCHING)))
     stopped = t.either(there, over)
     bits = t.emit(f"bitcast {_MASK} {stopped} to i{LANES}")

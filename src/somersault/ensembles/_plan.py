@@ -177,7 +177,8 @@ class Plan:
                 n: np.where(good, x, nominal[n]) if isinstance(x, np.ndarray) else x
                 for n, x in values.items()
             }
-        begun = starts(chosen, self.takeoff, self.joints, values, count)
+        with np.errstate(over="ignore", invalid="ignore"):  # such a flight ends "not finite"
+            begun = starts(chosen, self.takeoff, self.joints, values, count)
         course = course_of(chosen, self.takeoff, self.joints, begun, self.duration)
         first = chosen.start(begun.quaternion, begun.omega, begun.q, begun.u)
         states, watched = np.split(first, [chosen.state], 1)

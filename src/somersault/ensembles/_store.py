@@ -145,7 +145,7 @@ def _create(
 ) -> zarr.Array:  # fmt: skip
     return group.create_array(
         name, shape=shape, chunks=chunk, dtype=dtype, fill_value=fill, dimension_names=dims,
-        compressors=None if dtype == "f8" else "auto",  # the digits of floats do not shrink
+        compressors=None,  # digits do not shrink, and a whole file is told by its size
     )  # fmt: skip
 
 
@@ -248,8 +248,8 @@ def finished(path: Path, plan: Plan, cut: Layout) -> set[int]:
     found = set(range(len(cut)))
     samples = len(plan.report.times(plan.duration))
     for name, v in variables(plan.report, plan.system).items():
-        doubles = math.prod(cut.chunk) * (samples if v.over_time else 1)
-        places = _files(path / name / "c", 8 * doubles if v.dtype == "f8" else None)
+        each = np.dtype(v.dtype).itemsize * (samples if v.over_time else 1)
+        places = _files(path / name / "c", each * math.prod(cut.chunk))
         depth = len(cut.grid)
         found &= {int(np.ravel_multi_index(p[:depth], cut.grid)) for p in places}
     along = [name for name, vary in plan.vary.items() if vary.grid is None]
@@ -261,17 +261,16 @@ def finished(path: Path, plan: Plan, cut: Layout) -> set[int]:
     return found
 
 
-def _files(root: Path, size: int | None) -> set[tuple[int, ...]]:
-    """Places of the chunk files below a folder that have a size (bytes; None: any but none)."""
+def _files(root: Path, size: int) -> set[tuple[int, ...]]:
+    """Places of the chunk files below a folder that have a size, bytes."""
     found = set()
     for folder, _, files in os.walk(root):
         ahead = Path(folder).relative_to(root).parts
         for file in files:
             place = (*ahead, file)
-            if all(p.isdecimal() for p in place):
-                have = os.path.getsize(os.path.join(folder, file))
-                if have == size or (size is None and have):
-                    found.add(tuple(int(p) for p in place))
+            whole = os.path.getsize(os.path.join(folder, file)) == size
+            if whole and all(p.isdecimal() for p in place):
+                found.add(tuple(int(p) for p in place))
     return found
 
 

@@ -1,6 +1,6 @@
 """Takeoff, flight, landing."""
 
-from somersault.flight._compliance import compliant, with_momentum
+from somersault.flight._compliance import compliant, off_nominal, with_momentum
 from somersault.flight._deviation import deviated_flight
 from somersault.flight._flight import Flight, Landing
 from somersault.flight._fly import fly
@@ -38,6 +38,7 @@ __all__ = [
     "fly",
     "hula",
     "inertia_change",
+    "off_nominal",
     "parse_spec",
     "read_motion",
     "read_spec",

@@ -112,6 +112,28 @@ def with_momentum(model: str | Model, takeoff: Takeoff) -> Takeoff:
     )
 
 
+def off_nominal(
+    model: str | Model,
+    takeoff: Takeoff,
+    *,
+    somersault: float = 0.0,
+    tilt: float = 0.0,
+    twist: float = 0.0,
+) -> Takeoff:
+    """The same takeoff from an attitude that is so far off, rad: an off-nominal start.
+
+    The angular momentum stays where it is in space, and a motor tape is that of the nominal
+    flight (Playter 1994, section 6.3.2). Raises SomersaultError for a takeoff whose attitude is a
+    quaternion.
+    """
+    begun = with_momentum(model, takeoff)
+    if begun.quaternion is not None:
+        raise SomersaultError("a takeoff that is off by angles needs angles, not a quaternion")
+    given = {"somersault": somersault, "tilt": tilt, "twist": twist}
+    off = {name: getattr(begun, name) + number(name, by) for name, by in given.items()}
+    return replace(begun, **off)
+
+
 def _joints(model: Model, takeoff: Takeoff) -> tuple[JointPlan, ...]:
     require_takeoff(takeoff)
     return plans(model, takeoff.joints)
@@ -162,6 +184,12 @@ def _pose(
     for plan in joints:
         if plan.motion == "prescribed":
             whole = plan.given or moves(np.array(plan.times), np.array(plan.angles))
+            first, last = whole.known
+            if not first <= time <= last:
+                raise SomersaultError(
+                    f"pose {time:g} s is not in the recording of joint {plan.joint.name}, from "
+                    f"{first:g} to {last:g} s; give a time of the motion"
+                )
             values.append(value(whole, time)[0])
         else:
             values += plan.position

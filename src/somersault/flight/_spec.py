@@ -22,7 +22,7 @@ from somersault.flight._spec_keys import (
     YES,
     check_keys,
 )
-from somersault.flight._spec_motion import moved, softened
+from somersault.flight._spec_motion import moved, softened, started_off
 from somersault.flight._takeoff import JointTakeoff, Takeoff
 from somersault.model import Model, load
 
@@ -30,8 +30,7 @@ _MOST_BYTES = 10 * 2**20
 _TOP = {
     "model": TEXT, "axes": BODY_AXES, "duration": NUMBER, "gravity": NUMBERS,
     "accuracy": NUMBER, "samples": WHOLE, "steps": WHOLE, "until": TEXT, "takeoff": TABLE,
-    "joints": TABLE,
-    "motion": TABLE, "compliance": TABLE,
+    "joints": TABLE, "motion": TABLE, "compliance": TABLE, "off_nominal": TABLE,
 }  # fmt: skip
 _TAKEOFF = {
     "somersault": NUMBER, "tilt": NUMBER, "twist": NUMBER, "quaternion": NUMBERS,
@@ -101,6 +100,8 @@ def parse_spec(given: Mapping[str, Any], beside: Path) -> FlightSpec:
     begun = Takeoff(**takeoff, joints=setups)
     if "compliance" in given:
         begun = softened(given["compliance"], model, begun)
+    if "off_nominal" in given:
+        begun = started_off(given["off_nominal"], model, begun)
     return FlightSpec(
         model,
         duration,

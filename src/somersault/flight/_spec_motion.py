@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from somersault._errors import SomersaultError
-from somersault.flight._compliance import compliant
+from somersault.flight._compliance import compliant, off_nominal
 from somersault.flight._motion import Motion
 from somersault.flight._motion_files import read_motion
 from somersault.flight._spec_keys import NUMBER, TABLE, TEXT, YES, check_keys
@@ -23,6 +23,7 @@ _READ = ("names", "ignore_others", "degrees", "cutoff", "rate", "start", "stop",
 _COMPLIANCE = {"natural_frequency": NUMBER, "damping_ratio": NUMBER, "pose": "", "tape": YES,
     "stop_stiffness": NUMBER, "stop_damping": NUMBER,
 }  # fmt: skip
+_OFF = {"somersault": NUMBER, "tilt": NUMBER, "twist": NUMBER}
 
 
 def moved(
@@ -67,3 +68,9 @@ def softened(given: Mapping[str, Any], model: str | Model, takeoff: Takeoff) -> 
         stop_stiffness=given.get("stop_stiffness", 0.0),
         stop_damping=given.get("stop_damping", 0.0),
     )  # fmt: skip
+
+
+def started_off(given: Mapping[str, Any], model: str | Model, takeoff: Takeoff) -> Takeoff:
+    """The takeoff, as far from its attitude as an [off_nominal] table says."""
+    check_keys("off_nominal.", given, _OFF)
+    return off_nominal(model, takeoff, **given)

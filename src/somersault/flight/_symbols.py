@@ -212,9 +212,10 @@ class Symbols:
 
     @cached_property
     def gauge(self) -> Any:
-        """cos Θ cos Ψ (eq. 2.2): its sign changes at a quarter twist."""
-        tilting, _, twisting = in_sequence(self.quaternion[1:], self.model.axes)
-        return 1 - 2 * (tilting * tilting + twisting * twisting)
+        """cos Θ cos Ψ (eq. 2.2) times |q|²: its sign changes at a quarter twist."""
+        w, *vector = self.quaternion
+        tilting, turning, twisting = in_sequence(vector, self.model.axes)
+        return w * w + turning * turning - tilting * tilting - twisting * twisting
 
     @cached_property
     def loads(self) -> Any:
