@@ -100,10 +100,11 @@ class Vary:
         return None if self.values is None else _listed(self.values)
 
     def quantile(self, u: Array) -> Array:
-        """Values at uniform draws u in (0, 1)."""
+        """Values at uniform draws u in (0, 1); inf where they are too large for a number."""
         assert self.distribution is not None
         given = [float(x) for x in getattr(self, self.distribution)]
-        return DISTRIBUTIONS[self.distribution][1](u, *given)
+        with np.errstate(over="ignore"):
+            return DISTRIBUTIONS[self.distribution][1](u, *given)
 
 
 def _names(given: Any) -> tuple[Any, ...]:
