@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -110,3 +112,10 @@ def test_what_is_listed_is_taken_as_it_is() -> None:
     listed = so.Vary(sets=ANY, samples=[3.0, 1.0, 2.0, 1.0])
     found = draws({"x": listed, **FOUR}, "random", 0, np.array([1, 2, 3]))
     np.testing.assert_array_equal(found["x"], [1.0, 2.0, 1.0])
+
+
+def test_a_draw_too_large_for_a_number_is_infinite_without_a_warning() -> None:
+    vary = so.Vary(sets=ANY, lognormal=[1.0, 2000.0])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert vary.quantile(np.array([0.01, 0.99])).tolist() == [0.0, np.inf]

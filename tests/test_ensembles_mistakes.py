@@ -275,3 +275,11 @@ def test_a_spec_that_is_none(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     refused(capsys, file, "TOML")
     file.write_bytes(b"\xff\xfe\x00")
     refused(capsys, file, "TOML")
+
+
+def test_an_unknown_table_is_told_what_an_ensemble_takes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = spec(tmp_path, vary='[vry.K]\nsets = "joints.shoulder.stiffness"\nvalues = [20.0]\n')
+    said = refused(capsys, file, "vry is no key", "vary, sample, report, target", "takeoff")
+    assert "samples" not in said

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 import warnings
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from somersault.cli import main
 from somersault.ensembles import (
     ENDINGS,
     _selection,
+    _sensitivity,
     _summary,
     failed,
     fraction,
@@ -279,3 +281,49 @@ def test_the_command_says_which_indices_it_prints(
     assert f"  {which} Sobol' indices of tilt: leant 0." in capsys.readouterr().out
     assert main(["ensemble", str(tmp_path / "spec.toml"), "--json"]) == 0
     assert list(json.loads(capsys.readouterr().out)["sensitivity"]) == [f"tilt ({which})"]
+
+
+def test_a_quick_ranking_takes_some_of_the_samples(monkeypatch: pytest.MonkeyPatch) -> None:
+    data = ishigami("sobol", 16384)
+    monkeypatch.setattr(_sensitivity, "_QUICK", 6 * 8192)  # 2 rankings of 3 quantities
+    found, used = _sensitivity.quick(data, ["y"])
+    assert used == 8192
+    assert list(found["y"]) == ["first_order"]
+    for name in NAMES:
+        np.testing.assert_allclose(found["y"].first_order.sel(input=name), FIRST[name], atol=0.04)
+    whole = sensitivity(data, "y")
+    assert not np.array_equal(found["y"].first_order, whole.first_order)
+    monkeypatch.undo()
+    found, used = _sensitivity.quick(data, ["y"])
+    assert used == 16384
+    np.testing.assert_array_equal(found["y"].first_order, whole.first_order)
+    data = ishigami("saltelli", 5 * 1024)
+    found, used = _sensitivity.quick(data, ["y"])
+    assert used == 5 * 1024
+    np.testing.assert_array_equal(found["y"].total, sensitivity(data, "y").total)
+
+
+def test_rankings_of_many_samples_are_quick() -> None:
+    data = ishigami("random", 100_000).isel(K=[0])
+    data = data.assign({f"y{k}": data.y for k in range(24)})
+    _sensitivity.quick(data, ["y0"])  # SALib is loaded
+    begun = time.process_time()
+    _, used = _sensitivity.quick(data, [f"y{k}" for k in range(24)])
+    assert time.process_time() - begun < 2.0  # 0.3 s; with resampling 60 s
+    assert used == 2**20 // 72
+
+
+def test_the_command_says_how_many_samples_it_ranked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "spec.toml").write_text(
+        'model = "furrer"\nduration = 0.2\n[takeoff]\nspin = 8.64\n'
+        '[vary.leant]\nadds_to = "takeoff.tilt"\nnormal = [0.0, 0.1]\n'
+        '[vary.turned]\nadds_to = "takeoff.twist"\nnormal = [0.0, 0.01]\n'
+        '[sample]\nsize = 256\n[report]\nquantities = ["tilt"]\n'
+    )
+    monkeypatch.setattr(_sensitivity, "_QUICK", 400)
+    assert main(["ensemble", str(tmp_path / "spec.toml")]) == 0
+    assert "indices of tilt (from 200 of 256 samples): leant 0." in capsys.readouterr().out
+    assert main(["ensemble", str(tmp_path / "spec.toml"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["ranked_samples"] == 200

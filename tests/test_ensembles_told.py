@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -187,3 +188,57 @@ def test_steps_are_those_of_the_whole_flight() -> None:
         made = so.ensemble("furrer", takeoff, 1.0, steps=most).dataset
         assert ENDINGS[int(made.ended[0])] == ending, (most, needed)
         assert np.isnan(made.tilt.values[0]) == (ending != "duration")
+
+
+# ------------------------------------------------------------------------- units
+
+
+def test_what_varies_has_the_unit_of_the_numbers_it_moves() -> None:
+    units = {
+        "takeoff.tilt": "rad", "takeoff.tilt_rate": "rad/s", "takeoff.spin": "rad/s",
+        "joints.shoulder.angle": "rad", "joints.left_shoulder.rate": "rad/s",
+        "joints.shoulder.stiffness": "N m/rad", "joints.right_shoulder.damping": "N m s/rad",
+        "joints.shoulder.pretension": "N m", "joints.shoulder.rest": "rad",
+        "bodies.left_arm.mass": "kg", "bodies.left_arm.com.1": "m",
+        "bodies.left_arm.position.2": "m",
+    }  # fmt: skip
+    free = Takeoff(spin=SPIN, joints={"shoulder": JointTakeoff("sprung", angle=1.4, rest=1.4)})
+    for path, unit in units.items():
+        assert attributes(free, path) == {"adds_to": [path], "units": unit}
+    moves = {"shoulder": JointTakeoff("prescribed", times=(0.0, 0.1), angles=(0.0, 1.0))}
+    momentum = Takeoff(angular_momentum=(50.0, 0.0, 0.0), joints=moves)
+    for path, unit in (
+        ("joints.shoulder.times", "s"), ("joints.shoulder.angles.2", "rad"),
+        ("takeoff.angular_momentum.2", "kg m2/s"),
+    ):  # fmt: skip
+        assert attributes(momentum, path)["units"] == unit
+    velocity = Takeoff(angular_velocity=(8.0, 0.0, 0.0), joints=moves)
+    assert attributes(velocity, "takeoff.angular_velocity.1")["units"] == "rad/s"
+    assert attributes(free, "takeoff.tilt", unit="degree", scale=0.0175)["units"] == "degree"
+    assert "units" not in attributes(free, "takeoff.tilt", scale=2.0)
+    assert "units" not in attributes(free, "takeoff.tilt", "takeoff.spin")
+    assert attributes(free, "takeoff.tilt", "takeoff.twist")["units"] == "rad"
+
+
+def attributes(takeoff: Takeoff, *paths: str, **more: Any) -> dict[str, Any]:
+    vary = {"x": so.Vary(adds_to=list(paths), values=[0.0], **more)}
+    return so.ensemble("furrer", takeoff, 0.01, vary, report=["somersault"]).dataset.x.attrs
+
+
+def test_a_slide_has_units_of_its_own(tmp_path: Path) -> None:
+    file = tmp_path / "slide.xml"
+    through = 'contype="0" conaffinity="0"'
+    file.write_text(
+        "<mujoco><worldbody><body><freejoint/>"
+        f'<geom {through} type="box" size=".1 .1 .3" mass="9"/>'
+        '<body><joint name="rail" type="slide" axis="0 0 1" stiffness="5" damping="1"/>'
+        f'<geom {through} type="sphere" size=".1" mass="1"/></body></body></worldbody></mujoco>'
+    )
+    takeoff = Takeoff(spin=3.0, joints={"rail": JointTakeoff("sprung")})
+    for what, unit in (
+        ("angle", "m"), ("rate", "m/s"), ("stiffness", "N/m"), ("damping", "N s/m"),
+        ("rest", "m"), ("pretension", "N"),
+    ):  # fmt: skip
+        vary = {"x": so.Vary(adds_to=f"joints.rail.{what}", values=[0.0])}
+        made = so.ensemble(str(file), takeoff, 0.01, vary, report=["somersault"]).dataset
+        assert made.x.attrs["units"] == unit

@@ -82,20 +82,22 @@ def run(chosen: argparse.Namespace) -> None:
     points = spec.plan.count // spec.plan.dims.get("sample", 1)
     few = points * len(spec.plan.report.quantities) <= _MOST_RANKINGS
     if len(drawn) > 1 and 64 <= spec.plan.size <= _MOST_RANKED and few:
-        record["sensitivity"] = _ranking(found, spec.plan.report.quantities)
+        record |= _ranking(found.dataset, spec.plan.report.quantities)
     print(json.dumps(record) if chosen.json else "\n".join(_page(record)))
 
 
 _MOST_RANKED = 100_000  # samples
-_MOST_RANKINGS = 24  # a ranking takes some hundredths of a second at every point of the grids
+_MOST_RANKINGS = 24  # one of each thing reported, at every point of the grids
 
 
-def _ranking(found: Any, names: tuple[str, ...]) -> dict[str, dict[str, float | None]]:
-    """Sobol' indices of what is reported, averaged over the grids; None where they are not
-    determined: too few flights that did not fail, or no variance."""
+def _ranking(data: Any, names: tuple[str, ...]) -> dict[str, Any]:
+    """Sobol' indices of what is reported, averaged over the grids, and from how many samples;
+    None where they are not determined: too few flights that did not fail, or no variance."""
+    from somersault.ensembles._sensitivity import quick
+
+    found, used = quick(data, names)
     result = {}
-    for name in names:
-        indices = found.sensitivity(name)
+    for name, indices in found.items():
         which = "total" if "total" in indices else "first_order"
         values = indices[which]
         mean = values.mean([d for d in values.dims if d != "input"])
@@ -103,7 +105,7 @@ def _ranking(found: Any, names: tuple[str, ...]) -> dict[str, dict[str, float | 
             str(i): float(v) if v == v else None
             for i, v in zip(mean["input"].values, mean.values, strict=True)
         }
-    return result
+    return {"sensitivity": result, "ranked_samples": used}
 
 
 def _page(record: dict[str, Any]) -> list[str]:
@@ -122,11 +124,14 @@ def _page(record: dict[str, Any]) -> list[str]:
             f"  landing error within {share['tolerance']:g} rad: {100 * share['fraction']:.1f} % "
             f"({100 * share['low']:.1f} to {100 * share['high']:.1f} % with 95 % confidence)"
         )
+    some = ""
+    if record.get("ranked_samples", size := record["dimensions"].get("sample")) != size:
+        some = f" (from {record['ranked_samples']:,} of {size:,} samples)"
     for name, row in record.get("sensitivity", {}).items():
         known = [f"{who} {value:.2f}" for who, value in row.items() if value is not None]
         quantity, which = name.removesuffix(")").rsplit(" (", 1)
         lines.append(
-            f"  {which} Sobol' indices of {quantity}: {', '.join(known) or 'not determined'}"
+            f"  {which} Sobol' indices of {quantity}{some}: {', '.join(known) or 'not determined'}"
         )
     for key in ("dataset", "picture"):
         if key in record:

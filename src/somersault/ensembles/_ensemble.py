@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +13,7 @@ from somersault._given import by_name, instance, name_list, text, truth, whole_n
 from somersault.ensembles import _run, _store
 from somersault.ensembles._plan import MOST_FLIGHTS, MOST_SEED, Plan, check
 from somersault.ensembles._report import Report
+from somersault.ensembles._targets import unit
 from somersault.ensembles._vary import Vary
 from somersault.flight._fly import STEPS, Event, check_ending, flight_time
 from somersault.flight._save import netcdf
@@ -146,7 +147,8 @@ def plan(
         float(accuracy), until, int(steps),
     )  # fmt: skip
     check(made)
-    return made
+    units = {name: unit(made.model, v, made.targets[name]) for name, v in varied.items()}
+    return replace(made, vary={n: replace(v, unit=units[n]) for n, v in varied.items()})
 
 
 def carried_out(

@@ -12,7 +12,7 @@ from somersault.ensembles._ensemble import plan
 from somersault.ensembles._plan import Plan
 from somersault.ensembles._report import Report
 from somersault.ensembles._vary import DISTRIBUTIONS, Vary
-from somersault.flight._spec import parse_spec, read_toml
+from somersault.flight._spec import TOP, parse_spec, read_toml
 from somersault.flight._spec_keys import NUMBER, NUMBERS, TEXT, TEXTS, WHOLE, check_keys
 
 _TABLES = ("vary", "sample", "report", "target")
@@ -47,6 +47,12 @@ def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
         raise SomersaultError("vary is empty; say what varies, [vary.NAME], or leave it out")
     if "samples" in given:
         raise SomersaultError("samples is no key of an ensemble's SPEC; histories are in [report]")
+    known = [*(key for key in TOP if key != "samples"), *_TABLES]
+    for key in given:
+        if key not in known:
+            raise SomersaultError(
+                f"{key} is no key of an ensemble's SPEC; here it takes {', '.join(known)}"
+            )
     flight = parse_spec({k: v for k, v in given.items() if k not in _TABLES}, beside)
     sample, report, target = (dict(given.get(key, {})) for key in _TABLES[1:])
     check_keys("sample.", sample, _SAMPLE)

@@ -125,6 +125,34 @@ def _of_body(
     ]
 
 
+_UNITS = {  # of what is no joint's
+    "somersault": "rad", "tilt": "rad", "twist": "rad", "spin": "rad/s", "tilt_rate": "rad/s",
+    "twist_rate": "rad/s", "angular_velocity": "rad/s", "angular_momentum": "kg m2/s",
+    "mass": "kg", "com": "m", "position": "m",
+}  # fmt: skip
+_JOINT_UNITS = {  # of a hinge or a ball, and of a slide
+    "angle": ("rad", "m"), "angles": ("rad", "m"), "rest": ("rad", "m"), "times": ("s", "s"),
+    "rate": ("rad/s", "m/s"), "stiffness": ("N m/rad", "N/m"),
+    "damping": ("N m s/rad", "N s/m"), "pretension": ("N m", "N"),
+}  # fmt: skip
+
+
+def unit(model: Model, vary: Vary, moved: tuple[Target, ...]) -> str:
+    """The unit of a varied quantity: as given, else that of all the numbers that it moves, where
+    they have the same and no scale comes between; else ""."""
+    if vary.unit or vary.scale != 1:
+        return vary.unit
+    units = {_unit(model, t.name) for t in moved if not str(t.name[0]).startswith("inertia.")}
+    return units.pop() if len(units) == 1 else ""
+
+
+def _unit(model: Model, name: Name) -> str:
+    what = str(name[1] if name[0] == "takeoff" else name[0]).split(".")[0]
+    if what in _JOINT_UNITS:
+        return _JOINT_UNITS[what][model.joint(str(name[1])).kind == "slide"]
+    return _UNITS[what]
+
+
 def check_apart(vary: Mapping[str, Vary], where: Mapping[str, tuple[Target, ...]]) -> None:
     """SomersaultError where two varied quantities set the same number."""
     owner: dict[Name, str] = {}

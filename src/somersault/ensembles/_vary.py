@@ -63,7 +63,8 @@ class Vary:
     damping, rest, pretension; a pair by its common name), "joints.NAME.times" or
     "joints.NAME.times.2" (angles likewise; all of them, or one, from 1), "bodies.NAME.mass" (its
     moments of inertia along with it), "bodies.NAME.com.1", "bodies.NAME.position.3". What they
-    are given is `scale` times this quantity.
+    are given is `scale` times this quantity. Its `unit` is theirs if none is given, where they
+    have the same and `scale` is 1.
 
     `values` are a grid: every one goes with every other quantity's, along a dimension of its
     own. All else runs along the dimension `sample`, with the same draws at every point of
@@ -100,10 +101,11 @@ class Vary:
         return None if self.values is None else _listed(self.values)
 
     def quantile(self, u: Array) -> Array:
-        """Values at uniform draws u in (0, 1)."""
+        """Values at uniform draws u in (0, 1); inf where they are too large for a number."""
         assert self.distribution is not None
         given = [float(x) for x in getattr(self, self.distribution)]
-        return DISTRIBUTIONS[self.distribution][1](u, *given)
+        with np.errstate(over="ignore"):
+            return DISTRIBUTIONS[self.distribution][1](u, *given)
 
 
 def _names(given: Any) -> tuple[Any, ...]:

@@ -27,7 +27,7 @@ from somersault.flight._takeoff import JointTakeoff, Takeoff
 from somersault.model import Model, load
 
 _MOST_BYTES = 10 * 2**20
-_TOP = {
+TOP = {
     "model": TEXT, "axes": BODY_AXES, "duration": NUMBER, "gravity": NUMBERS,
     "accuracy": NUMBER, "samples": WHOLE, "steps": WHOLE, "until": TEXT, "takeoff": TABLE,
     "joints": TABLE, "motion": TABLE, "compliance": TABLE, "off_nominal": TABLE,
@@ -80,7 +80,7 @@ def read_toml(path: Path) -> dict[str, Any]:
 
 def parse_spec(given: Mapping[str, Any], beside: Path) -> FlightSpec:
     """The flight in a SPEC's tables."""
-    check_keys("", given, _TOP)
+    check_keys("", given, TOP)
     if "model" not in given:
         raise SomersaultError("model is missing; give a shipped model's name or a file")
     takeoff, joints = given.get("takeoff", {}), given.get("joints", {})
