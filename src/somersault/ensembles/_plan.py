@@ -146,10 +146,11 @@ class Plan:
         """
         given = self.varied(first, last)
         edges = [*range(0, last - first, self._together), last - first]
-        parts = [
-            self._fly({name: x[a:b] for name, x in given.items()}, b - a)
-            for a, b in pairwise(edges)
-        ]
+        with np.errstate(over="ignore", invalid="ignore"):  # such a flight ends "not finite"
+            parts = [
+                self._fly({name: x[a:b] for name, x in given.items()}, b - a)
+                for a, b in pairwise(edges)
+            ]
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
     @cached_property
@@ -177,8 +178,7 @@ class Plan:
                 n: np.where(good, x, nominal[n]) if isinstance(x, np.ndarray) else x
                 for n, x in values.items()
             }
-        with np.errstate(over="ignore", invalid="ignore"):  # such a flight ends "not finite"
-            begun = starts(chosen, self.takeoff, self.joints, values, count)
+        begun = starts(chosen, self.takeoff, self.joints, values, count)
         course = course_of(chosen, self.takeoff, self.joints, begun, self.duration)
         first = chosen.start(begun.quaternion, begun.omega, begun.q, begun.u)
         states, watched = np.split(first, [chosen.state], 1)
