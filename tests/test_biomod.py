@@ -14,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
+import somersault as so
 from somersault._errors import SomersaultError
 from somersault.model._biomod import read_biomod
 from somersault.model._types import Model
@@ -320,6 +321,7 @@ MISTAKES = {
     "version 4\nsegment": (2, "the name of the segment"),
     "version 4\nsegment A\nmass 1\nsegment B": (2, "'A' never ends; add endsegment"),
     "version 4\nsegment root": (2, "cannot be named root"),
+    "version 4\nsegment ROOT": (2, "cannot be named ROOT"),
     "version 4\nsegment A\nendsegment\nsegment A": (4, "two segments 'A'"),
     "version 4\nsegment A\nparent B": (3, "'B' of 'A' is not a segment above it"),
     "version 4\nsegment A\nmass nan": (3, "'nan' is not a number"),
@@ -335,6 +337,10 @@ MISTAKES = {
     "version 4\nsegment A\ntranslations xx": (3, "an axis twice"),
     "version 4\nsegment A\nrotations zz": (3, "one axis twice"),
     "version 4\nsegment A\nrotations x\nranges 2 1": (4, "runs from 2 down to 1"),
+    "version 4\nsegment A\ntranslations xy rotations z\nranges 1 2\nendsegment": (
+        5,
+        "start of range 2 of 'A' (it has 3: 2 for translations, 1 for rotations)",
+    ),
     "version 4\nsegment A\nrotations x\nranges 1 2\ntranslations x": (5, "below the ranges"),
     "version 4\nsegment A\nrotations q\njointdampings 1 1 2": (4, "quaternion differ"),
     "version 4\nsegment A\nrotations x\njointdampings -1": (4, "negative"),
@@ -359,6 +365,25 @@ def test_a_mistake_is_named_with_its_line(text: str, tmp_path: Path) -> None:
     with pytest.raises(SomersaultError, match=re.escape(words)) as caught:
         read(tmp_path, text)
     assert str(caught.value).startswith(f"model.bioMod, line {line}: ")
+
+
+def test_a_segment_may_be_called_root_in_other_letters(tmp_path: Path) -> None:
+    text = FREE.replace("segment A", "segment Root").format("")
+    model = read(tmp_path, text + "segment B parent Root rotations x mass 1 endsegment")
+    assert model.free
+    assert [(body.name, body.parent) for body in model.bodies] == [("Root", -1), ("B", 0)]
+    assert read(tmp_path, FREE.format("parent Root ")).free  # where no segment is, the ground
+
+
+def test_a_root_that_only_turns_is_told_what_it_lacks(tmp_path: Path) -> None:
+    model = read(tmp_path, FREE.replace("translations xyz\n", "").format("inertia_xxyyzz 1 1 1 "))
+    for call in (
+        lambda: so.load(model, axes=(1, 2, 3)),
+        lambda: so.fly(model, so.Takeoff(), 1.0),
+        lambda: so.spin(model),
+    ):
+        with pytest.raises(SomersaultError, match="translations xyz beside rotations xyz"):
+            call()
 
 
 def test_files_that_are_no_text(tmp_path: Path) -> None:

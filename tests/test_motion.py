@@ -365,7 +365,7 @@ BAD_FILES = {
     "a pair twice": (ROWS[0] + ",elbow\n" + "\n".join(r + ",1" for r in ROWS[1:]), "given twice"),
     "milliseconds": (
         "\n".join([ROWS[0], *(f"{1000 * k / 250},1.0" for k in range(301))]),
-        "times are in seconds",
+        "if the times are milliseconds",
     ),
 }  # fmt: skip
 
@@ -419,8 +419,15 @@ def test_files_that_are_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     ("header", "expected"),
     [
         ("", "endheader"),
-        ("name\nnRows=400\ninDegrees=no\nendheader\n", "tells of 400 rows and it has 301"),
-        ("name\nnColumns=9\ninDegrees=no\nendheader\n", "tells of 9 columns and it has 2"),
+        (
+            "name\nnRows=400\ninDegrees=no\nendheader\n",
+            "says 400 rows and there are 301; it was cut off",
+        ),
+        (
+            "name\nnRows=9\ninDegrees=no\nendheader\n",
+            "9 rows and there are 301; correct its header",
+        ),
+        ("name\nnColumns=9\ninDegrees=no\nendheader\n", "says 9 columns and there are 2"),
         ("DataType=Vec3\nversion=3\nendheader\n", "holds vec3"),
     ],
 )
@@ -468,6 +475,12 @@ def test_bad_options(options: dict, expected: str) -> None:
 )
 def test_bad_keyframes(keyframes: dict, expected: str) -> None:
     assert expected in refused(lambda: Motion.moves("gymnast", keyframes))
+
+
+@pytest.mark.parametrize("cutoff", [None, 6.0])
+def test_times_in_milliseconds_are_suspected(cutoff: float | None) -> None:
+    said = refused(lambda: sampled_motion("gymnast", 1000 * TIMES, ANGLES, cutoff=cutoff))
+    assert "milliseconds" in said
 
 
 def test_limits_hold_between_knots_too() -> None:

@@ -240,6 +240,8 @@ def test_every_entry_runs_and_explains_what_does_not_hold(tmp_path):
         "fig5-2.k1-bare",
         "fig5-5.high",
         "fig5-7.variance-softest",
+        # One corner of the starts, where our motion's valley is steep; 64 % of them land below 0.1.
+        "fig6-5.small",
         "gentle.half",  # three quarters of the starts land
         "gentle.rate",  # bounded torques do not twist as fast as the thesis's motion
         "sec4-3.positive-0.6",
@@ -247,5 +249,7 @@ def test_every_entry_runs_and_explains_what_does_not_hold(tmp_path):
         "table4-3.k3",
         "table5-1.rl3-weighted",
         "table5-1.scaled",
+        # Another gymnast: inertias are not printed, and 30 rad/s times a ratio of them is a root.
+        "table6-1.rows",
     }
     assert all(claim.note for claim in claims if not claim.holds)

@@ -146,8 +146,12 @@ def _opensim(lines: list[tuple[int, str]]) -> _Table:
         told = re.search(rf"^(?:n{what}\s*=|data{what}\s)\s*(\d+)\s*$", header, re.MULTILINE)
         if told and int(told.group(1)) != found:
             raise SomersaultError(
-                f"its header tells of {told.group(1)} {what} and it has {found}; it may have been "
-                "cut off, so export it again"
+                f"its header says {told.group(1)} {what} and there are {found}; "
+                + (
+                    "it was cut off, so export it again"
+                    if int(told.group(1)) > found
+                    else "correct its header, or export it again"
+                )
             )
     told = re.search(r"^indegrees\s*=\s*(yes|no|true|false)\b", header, re.MULTILINE)
     if told:

@@ -29,6 +29,7 @@ CUTOFF = 10.0  # Hz
 SLACK = 0.02  # rad: a degree, about what filter and spline overshoot where a limb stops at a limit
 MOST_SAMPLES = 200_000
 FEWEST_SAMPLES = DEGREE + 1
+SLOWEST = 5.0  # Hz; nothing that moves in a flight of a second or two is recorded by less
 _PASSES = 2
 _GAP = 2.5  # median steps: one lost sample is bridged, two are a gap
 _EVEN = 1e-3  # of a step
@@ -82,6 +83,12 @@ def sampled_motion(
         check_within(model.joint(name), raw[chosen, column], at[chosen], slack)
     even, samples, said = _even(at, raw)
     frequency = (len(even) - 1) / float(even[-1] - even[0])
+    if frequency < SLOWEST:
+        raise SomersaultError(
+            f"samples at {frequency:.3g} Hz are too few for a flight, which needs "
+            f"{SLOWEST:g} Hz; if the times are milliseconds, give seconds, or call the "
+            "column time [ms]"
+        )
     smooth = _filtered(samples, frequency, cutoff)
     moved = np.abs(smooth - samples).max(0)
     knots = _knots(first, last, frequency if rate is None else number("rate", rate))

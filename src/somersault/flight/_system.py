@@ -21,6 +21,7 @@ from somersault.flight._symbols import Symbols, moves_freely
 from somersault.flight._takeoff import Kind
 from somersault.flight._watch import VELOCITIES, longest, watch
 from somersault.model import Model
+from somersault.model._types import FREE_IT
 
 
 @lru_cache(maxsize=32)
@@ -54,9 +55,7 @@ class System:
         tape: bool = False,
     ) -> None:
         if not model.free:
-            raise SomersaultError(
-                f"{model.name} has a fixed base, so it cannot fly; give its base a free joint"
-            )
+            raise SomersaultError(f"{model.name} has a fixed base, so it cannot fly; {FREE_IT}")
         loose = [j.name for j, k in zip(model.joints, joints, strict=True) if k.motion in _LOOSE]
         if tape and loose:
             raise SomersaultError(

@@ -55,7 +55,8 @@ _ENDS = {"endsegment", "endvariables", *(end for ends, _ in _IGNORED.values() fo
 
 _RANGES = {"ranges", "rangesq", "rangesqdot", "rangesqddot", "jointdampings"}
 _DIGITS = "+-.0123456789"
-_BASES = {"base", "none", "ground", "world"}  # seen in files; biorbd itself knows only root
+_GROUND = ("root", "ROOT")  # biorbd's name and RBDL's, case and all; a segment may be Root
+_BASES = {"root", "base", "none", "ground", "world"}  # seen in files; biorbd knows only root
 _MOST_SEGMENTS = 1000  # the largest athletes have some 150
 _DUST = 1e-8  # kg, kg m2: biorbd's own default mass, there only to keep its matrices regular
 
@@ -184,8 +185,8 @@ class File:
         words = self.words
         line = words.line
         name = words.word("the name of the segment")
-        if name.lower() == "root":
-            raise words.error("a segment cannot be named root, the ground's name; rename it")
+        if name in _GROUND:
+            raise words.error(f"a segment cannot be named {name}, the ground's name; rename it")
         if name in self.segments:
             raise words.error(f"there are two segments {shown(name)}; rename one of them")
         if len(self.segments) == _MOST_SEGMENTS:
@@ -218,7 +219,7 @@ class File:
 
     def _parent(self, segment: Segment, key: str) -> None:
         name = self.words.word("the name of the parent")
-        if name.lower() == "root" or (name.lower() in _BASES and name not in self.segments):
+        if name.lower() in _BASES and name not in self.segments:
             name = "root"
         elif name not in self.segments:
             raise self.words.error(
@@ -254,8 +255,15 @@ class File:
     def _limits(self, segment: Segment, key: str) -> None:
         # A quaternion has four ranges that say nothing of its angles; they are read, not used.
         turns = 4 if segment.rotations == "q" else len(segment.rotations)
-        for number in range(len(segment.translations) + turns):
-            low, high = self.words.numbers(2, f"range {number + 1} of {shown(segment.name)}")
+        slides = len(segment.translations)
+        total = f"it has {slides + turns}: {slides} for translations, {turns} for rotations"
+        for number in range(slides + turns):
+            low, high = (
+                self.words.number(
+                    f"the {end} of range {number + 1} of {shown(segment.name)} ({total})"
+                )
+                for end in ("start", "end")
+            )
             if low > high:
                 raise self.words.error(
                     f"range {number + 1} of {shown(segment.name)} runs from {low:g} down to "

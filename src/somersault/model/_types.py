@@ -22,6 +22,10 @@ Matrix = tuple[Vector, Vector, Vector]
 
 ZERO: Vector = (0.0, 0.0, 0.0)
 IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+FREE_IT = (
+    "give its base a free joint (in a .bioMod: its root segment translations xyz beside "
+    "rotations xyz)"
+)
 GROUND = -1
 
 
@@ -183,7 +187,7 @@ def _check(model: Model) -> None:
     if not model.free and model.axes != AXES:
         raise SomersaultError(
             f"{model.name} has a fixed base, so it has no somersault, tilt or twist; leave its "
-            "axes out"
+            f"axes out, or {FREE_IT}"
         )
     for what, names in (
         ("body", [body.name for body in model.bodies]),

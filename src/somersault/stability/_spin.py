@@ -20,6 +20,7 @@ from somersault.dynamics import Equations, Kernel
 from somersault.model import Model
 from somersault.model._load import load
 from somersault.model._pose import pose as posed
+from somersault.model._types import FREE_IT
 from somersault.stability._matrices import spin_matrices, spin_torques
 
 if TYPE_CHECKING:
@@ -136,9 +137,7 @@ def spin(
 def require_free(model: Model) -> None:
     """Refuse a model whose base cannot turn freely."""
     if not model.free:
-        raise SomersaultError(
-            f"{model.name} has a fixed base, so it cannot spin freely; give its base a free joint"
-        )
+        raise SomersaultError(f"{model.name} has a fixed base, so it cannot spin freely; {FREE_IT}")
 
 
 def principal_inertias(model: str | Model, pose: Mapping[str, ArrayLike] | None = None) -> Array:

@@ -174,15 +174,16 @@ def _draw_6_2() -> Figure:
     torque = torque_twist(pose="T", duration=2.2).fly()
     ended = stopped_torque_twist()[0].fly()
     free = arm_tilt(duration=1.6).fly()
-    for flight, color, words, place in (
-        (torque, look.BLUE, "torque twist", (1.45, 1.75)),
-        (ended, look.GREEN, "its tilt taken out", (1.1, 0.35)),
-        (free, look.VERMILION, "torque-free, started and ended", (0.85, 1.13)),
+    for flight, color, words, place, spot in (
+        (torque, look.BLUE, "torque twist", (1.2, 1.62), (1.25, -7.3)),
+        (ended, look.GREEN, "its tilt taken out", (1.1, 0.4), (1.25, -0.7)),
+        (free, look.VERMILION, "torque-free,\nstarted and ended", (0.0, 1.2), (0.82, -3.6)),
     ):
         tilt, twist = principal_attitude(flight)
         left.plot(flight.times, np.unwrap(twist) / (2 * np.pi), color=color)
         right.plot(flight.times, np.degrees(tilt), color=color)
         look.label(left, *place, words, color)
+        look.label(right, *spot, words, color)
     left.set(xlabel="time (s)", ylabel="twists of the principal axes")
     right.set(xlabel="time (s)", ylabel="tilt of the principal axes (°)")
     return made
@@ -374,12 +375,17 @@ def _draw_6_3() -> Figure:
     look.label(left, 0.5, 0.8, "1/4 to 3/4 twist", look.GREY, ha="center")
     left.set(xlabel="twist in the middle of the extension", ylim=(0, 16), xlim=(0, 1.02))
     left.set_ylabel("mean tilt after it (°)")
-    for hold, color in ((0.0, look.SKY), (0.16, look.BLUE), (0.4, look.BLACK)):
+    for hold, color, height in (
+        (0.0, look.SKY, 7.6), (0.16, look.BLUE, 14.7), (0.4, look.BLACK, 10.3)
+    ):  # fmt: skip
         flown = hula(spin=_RATE, hold=hold, duration=1.4).fly()
         right.plot(flown.times, np.degrees(np.abs(principal_attitude(flown)[0])), color=color)
         end = _BEGIN + _QUARTER + hold
         here = np.degrees(np.interp(end, flown.times, np.abs(principal_attitude(flown)[0])))
         right.plot(end, here, "o", color=color, ms=6)
+        look.label(
+            right, 1.0, height, f"after a hold of {hold:g} s" if hold else "without a hold", color
+        )
     right.set(xlabel="time (s)", ylabel="tilt of the principal axes (°)", ylim=(0, 16))
     look.label(right, 0.55, 2.0, "dots: the hips begin to extend", look.GREY)
     return made

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 _CORNER = -0.1  # rad of tilt and twist at takeoff
 _FREQUENCY = rudi.THEIRS
+_LARGE = 0.3  # an error that is large, and below which the nominal landing is followed
+_TIMES = 4.0  # by which it must be less than with prescribed joints
+_SIGNIFICANT = 0.1  # rad of a joint's deviation
 _SHOWN = ("left_shoulder_abduction", "right_shoulder_abduction", "left_elbow")
 _GROUPS = ("shoulder", "elbow", "hip", "torso")
 
@@ -105,8 +108,9 @@ def fig_6_4() -> Result:
     claims = (
         statement(
             "fig6-4.error", "§6.3.3, Figure 6-4", "with prescribed joints the body's landing "
-            "attitude error is large", "large", f"e = {e:.2f}", e > 0.3,
-            "An error of 1.0 is large, says §6.3.2; a third of it is over 70° of twist.",
+            "attitude error is large", "large", f"e = {e:.2f}", e > _LARGE,
+            f"Holds when e is above {_LARGE:g}. An error of 1.0 is large, says §6.3.2; a third of "
+            "it is over 70° of twist.",
         ),
     )  # fmt: skip
     return Result(
@@ -124,19 +128,32 @@ def fig_6_5() -> Result:
         statement(
             "fig6-5.error", "§6.3.3, Figure 6-5", "with ω_n = 30 the landing attitude closely "
             "follows that of the nominal case", "closely", f"e = {e:.2f}, {stiff / e:.1f} times "
-            "less than with prescribed joints", e < 0.3 and stiff / e > 4,
+            "less than with prescribed joints", e < _LARGE and stiff / e > _TIMES,
+            f"Holds when e is below {_LARGE:g} and over {_TIMES:g} times less than with prescribed "
+            "joints: better, though not landed in the sense of the maps (fig6-5.small).",
+        ),
+        statement(
+            "fig6-5.small", "§6.3.3, Figure 6-5", "this start lands with a small error, as nearly "
+            "half of them do", "closely", f"e = {e:.2f}", e < rudi.SMALL,
+            f"Holds when e is below {rudi.SMALL:g}, which is what counts as landed in figures 6-2 "
+            "and 6-3; the thesis gives no number. It is one corner of the grid, at which our "
+            f"motion's valley is steep; {100 * rudi.error_map(_FREQUENCY).share:.0f} % of the "
+            "grid's starts land below that at this frequency.",
         ),
         statement(
             "fig6-5.joints", "§6.3.3, Figure 6-5", "joint angles incur significant errors",
             "significant", f"up to {tracking.max():.2f} rad on the way",
-            float(tracking.max()) > 0.1,
+            float(tracking.max()) > _SIGNIFICANT,
+            f"Holds when some joint is off by more than {_SIGNIFICANT:g} rad on the way.",
         ),
     )  # fmt: skip
     return Result(
         "The same start with feed-forward torques and compliance of ω_n = 30 rad/s: joints err, "
         "the landing attitude is close to the nominal one.",
-        f"e = {e:.2f}: {_off(flight)}. Gains from the outboard inertias in mid-twist.", claims,
-        _draw_worked(flight),
+        f"e = {e:.2f}: {_off(flight)}. Below {rudi.SMALL:g} counts as landed in the maps, so this "
+        "start does not, though it is far better off than with prescribed joints. Gains from the "
+        "outboard inertias in mid-twist.",
+        claims, _draw_worked(flight),
     )  # fmt: skip
 
 
@@ -173,7 +190,10 @@ def _draw_worked(flight: Flight) -> Figure:
         ax.plot(nominal["time"], nominal["joint_angle"].sel(joint=name), "--", color=color, lw=1.0)
         line = history["joint_angle"].sel(joint=name)
         ax.plot(history["time"], line, color=color, label=name.replace("_", " "))
-    axes[3].legend(fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    axes[3].set(xlabel="time (s)", ylabel="joint angle (rad)")
+    axes[3].legend(
+        title=f"{len(_SHOWN)} of the {len(rudi.joint_names())} joints", title_fontsize=8,
+        alignment="left", fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0),
+    )  # fmt: skip
+    axes[3].set(xlabel="time (s)", ylabel=f"{len(_SHOWN)} joint angles (rad)")
     axes[0].set_title("solid: from tilt and twist of −0.1 rad; dashed: the nominal flight")
     return made

@@ -19,7 +19,15 @@ _COARSE = 11  # points a side in a scan
 _FEW = (24.0, 30.0, 37.0, 45.0, 60.0, 100.0, 150.0, 200.0)
 _AROUND = (20.0, 24.0, 28.0, 33.0, 45.0, 100.0)
 _FEWER = 7  # points a side where most flights fail, each after thousands of steps
+_NARROW = 5.0  # times as sensitive to one direction as to the other: a narrow valley
+_FEW_LAND = 0.25  # of the grid
+_LARGE = 0.3  # as in figure 6-4
 _POSES: tuple[rudi.Pose, ...] = ("wrap", "pike", "following")
+_GAINS = {
+    "wrap": "gains from the wrap",
+    "pike": "gains from the pike",
+    "following": "gains following the pose",
+}
 _WHERE = "§6.3.3, Figure 6-3"
 
 
@@ -47,12 +55,15 @@ def fig_6_2() -> Result:
             f"sensitivity to one direction of (tilt, twist) is {sizes[0] / sizes[1]:.0f} times "
             f"that to the other ({sizes[0]:.0f} and {sizes[1]:.1f}); {100 * found.share:.0f} % of "
             "the grid is below 0.1",
-            bool(sizes[0] / sizes[1] > 5) and found.share < 0.25,
+            bool(sizes[0] / sizes[1] > _NARROW) and found.share < _FEW_LAND,
+            f"Holds when the one is over {_NARROW:g} times the other and less than "
+            f"{100 * _FEW_LAND:.0f} % land below {rudi.SMALL:g}.",
         ),
         statement(
             "fig6-2.unreliable", where, "a prescribed motion would not produce reliable landings",
             "unreliable", f"median error {away:.2f}, {100 * found.share:.0f} % below 0.1",
-            away > 0.3,
+            away > _LARGE,
+            f"Holds when the median is above {_LARGE:g}, the error called large in fig6-4.",
         ),
     )  # fmt: skip
     return Result(
@@ -98,6 +109,8 @@ def fig_6_3() -> Result:
             f"({low.failures} of {low.error.size} failed), {100 * high.share:.0f} % at "
             f"{FREQUENCIES[-1]:g}", 0 < place < len(FREQUENCIES) - 1
             and max(low.share, high.share) < soft.share / 2,
+            "Holds when the best is neither the lowest nor the highest of the scan and at both "
+            "ends less than half as many land below 0.1.",
         ),
     )  # fmt: skip
     return Result(
@@ -152,7 +165,7 @@ def poses() -> Result:
         f"{100 * untaped:.0f} % land below 0.1.",
         (),
         _draw_scan(shares, stiff),
-        Table(("ω_n rad/s", *(f"gains in {p}: share (failed)" for p in _POSES)), rows),
+        Table(("ω_n rad/s", *(f"{_GAINS[p]}: share (failed)" for p in _POSES)), rows),
     )
 
 
@@ -210,7 +223,7 @@ def _draw_map(found: rudi.Landings, title: str) -> Figure:
         colors=[look.VERMILION], linewidths=1.6,
     )  # fmt: skip
     ax.set(xlabel="tilt at takeoff (rad)", ylabel="twist at takeoff (rad)", title=title)
-    made.colorbar(shown, ax=ax, extend="max").set_label("landing error e (red: 0.1)")
+    made.colorbar(shown, ax=ax, extend="max").set_label("landing error e (orange line: 0.1)")
     return made
 
 
@@ -221,10 +234,11 @@ def _draw_scan(shares: dict, stiff: float) -> Figure:
     ax = made.subplots()
     for pose, color in zip(_POSES, (look.BLUE, look.VERMILION, look.GREEN), strict=True):
         values = [100 * shares[pose][f].share for f in _FEW]
-        ax.plot(_FEW, values, "o-", color=color, ms=4, label=f"gains in {pose}")
+        ax.plot(_FEW, values, "o-", color=color, ms=4, label=_GAINS[pose])
     ax.axhline(100 * stiff, color=look.GREY, ls="--", lw=1.2, label="prescribed")
     ax.set(xscale="log", xlabel="body-clamped natural frequency ω_n (rad/s)", ylim=(0, None))
     ax.set_ylabel("starts that land below 0.1 (%)")
+    ax.set_title(f"a grid of {_FEWER} × {_FEWER} starts: each is {100 / _FEWER**2:.0f} %")
     ticks = [24, 30, 45, 60, 100, 200]
     ax.set_xticks(ticks, [str(t) for t in ticks])
     ax.minorticks_off()

@@ -283,8 +283,10 @@ def _draw_1_1() -> Figure:
     second.plot(cat.times, np.degrees(cat.dataset["twist"]), color=look.BLUE)
     second.set(ylabel="twist of the hips (°)", yticks=(0, 60, 120, 180))
     third.plot(arms.times, np.degrees(arms.dataset["twist"]), color=look.BLUE)
-    third.set(ylabel="twist (°)", xlabel="time (s)", yticks=(0, 120, 240, 360), ylim=(-15, 400))
+    third.set(ylabel="twist (°)", yticks=(0, 120, 240, 360), ylim=(-15, 400))
     third.yaxis.label.set_color(look.BLUE)
+    for ax in (first, second, third):
+        ax.set_xlabel("time (s)")
     other = third.twinx()
     other.plot(arms.times, np.degrees(arms.dataset["tilt"]), color=look.VERMILION)
     other.set(ylabel="tilt (°)", ylim=(-12, 0.45), yticks=(-10, -5, 0))
