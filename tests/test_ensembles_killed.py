@@ -158,7 +158,7 @@ def test_a_worker_that_is_killed_costs_nothing(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_stopped_by_the_keyboard(tmp_path: Path) -> None:
-    file, store = spec(tmp_path, 800), tmp_path / "map.zarr"
+    file, store = spec(tmp_path, 4_000), tmp_path / "map.zarr"
     for mode in MODES[1], MODES[3]:
         program, before = begun(file, store, *mode), finished(store)
         deadline = time.monotonic() + 60
