@@ -23,6 +23,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import machine
 import numpy as np
 
 import somersault as so
@@ -77,7 +78,8 @@ def lifetimes(flights: int) -> Plan:
 
 def load() -> str:
     """Load of the machine, as text."""
-    return f"{os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else "unknown"
+    averages = machine.load()
+    return f"{averages[0]:.1f}" if averages else "unknown"
 
 
 def size_of(store: Path) -> tuple[int, int]:
@@ -482,10 +484,7 @@ def main() -> None:
             report[part] = row
     finally:
         shutil.rmtree(folder, ignore_errors=True)
-    report["load_after"] = load()
-    print(f"load of the machine after: {load()}")
-    if options.json is not None:
-        options.json.write_text(json.dumps(report, indent=2) + "\n")
+    machine.finish(report, load(), options.json)
 
 
 if __name__ == "__main__":

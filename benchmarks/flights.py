@@ -10,8 +10,6 @@ from __future__ import annotations
 
 import argparse
 import copy
-import json
-import os
 import statistics
 import sys
 import time
@@ -20,6 +18,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+import machine
 import mujoco
 import mujoco.rollout
 import numpy as np
@@ -375,7 +374,7 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=5, help="measurements of each contender")
     parser.add_argument("--json", type=Path, help="write the numbers here as well")
     options = parser.parse_args()
-    before = os.getloadavg() if hasattr(os, "getloadavg") else None
+    before = machine.load()
     print(f"{threads_here()} threads; load of the machine before: {before}", flush=True)
     report: dict = {"threads": threads_here(), "load_before": before}
     for case in (layout(), gymnast_flights()):
@@ -387,10 +386,7 @@ def main() -> None:
         f"\none flight of eight somersaults with its dataset: median {single['median'] * 1e3:.1f} "
         f"ms, least {single['min'] * 1e3:.1f} ms (aim: less than {AIMS['one flight']:.0f})"
     )
-    report["load_after"] = os.getloadavg() if hasattr(os, "getloadavg") else None
-    print(f"load of the machine after: {report['load_after']}")
-    if options.json is not None:
-        options.json.write_text(json.dumps(report, indent=2) + "\n")
+    machine.finish(report, machine.load(), options.json)
 
 
 if __name__ == "__main__":

@@ -10,14 +10,13 @@ file for what each line means.
 from __future__ import annotations
 
 import argparse
-import json
-import os
 import statistics
 import warnings
 from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
 
+import machine
 import numpy as np
 import ours
 from gymnast import gymnast
@@ -132,17 +131,14 @@ def main() -> None:
     parser.add_argument("--json", type=Path, help="write the numbers here as well")
     parser.add_argument("--only", help="layout, gymnast or humanoid")
     options = parser.parse_args()
-    before = os.getloadavg() if hasattr(os, "getloadavg") else None
+    before = machine.load()
     report: dict = {"threads": threads_here(), "load_before": before, "models": {}}
     print(f"{threads_here()} threads; load of the machine before: {before}", flush=True)
     for name, model in models().items():
         if options.only in (None, name):
             report["models"][name] = benchmark(model, options.rounds)
             print("\n" + table(name, report["models"][name]), flush=True)
-    report["load_after"] = os.getloadavg() if hasattr(os, "getloadavg") else None
-    print(f"\nload of the machine after: {report['load_after']}")
-    if options.json is not None:
-        options.json.write_text(json.dumps(report, indent=2) + "\n")
+    machine.finish(report, machine.load(), options.json)
 
 
 if __name__ == "__main__":

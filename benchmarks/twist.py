@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import sys
 import time
 from collections.abc import Callable
@@ -18,6 +17,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
+import machine
 import mujoco
 import mujoco.rollout
 import numpy as np
@@ -366,19 +366,14 @@ def table(case: Case, own: dict) -> str:
     return "\n".join(lines)
 
 
-def load() -> tuple[float, ...] | None:
-    """The machine's load averages."""
-    return os.getloadavg() if hasattr(os, "getloadavg") else None
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--rounds", type=int, default=5, help="measurements of each contender")
     parser.add_argument("--accuracies", type=float, nargs="+", default=[1e-4, 1e-6, 1e-8])
     parser.add_argument("--json", type=Path, help="write the numbers here as well")
     options = parser.parse_args()
-    report: dict = {"threads": threads_here(), "load_before": load()}
-    print(f"{threads_here()} threads; load of the machine before: {load()}", flush=True)
+    report: dict = {"threads": threads_here(), "load_before": machine.load()}
+    print(f"{threads_here()} threads; load of the machine before: {machine.load()}", flush=True)
     for case in cases():
         report[case.name] = []
         for accuracy in options.accuracies:
@@ -386,10 +381,7 @@ def main() -> None:
             print("\n" + table(case, report[case.name][-1]), flush=True)
         aim = f"(aims: a map in less than {AIMS[case.name]:g} s"
         print(aim + (f", a ratio of {RATIO:g})" if case.name == "compliant" else ")"), flush=True)
-    report["load_after"] = load()
-    print(f"\nload of the machine after: {report['load_after']}")
-    if options.json is not None:
-        options.json.write_text(json.dumps(report, indent=2) + "\n")
+    machine.finish(report, machine.load(), options.json)
 
 
 if __name__ == "__main__":

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import importlib.util
 import itertools
 import sys
 import warnings
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import mujoco
 import numpy as np
 import pytest
+from programs import program
 from scipy.spatial.transform import Rotation
 
 from somersault import stability
@@ -546,10 +545,10 @@ class TestShipped:
     PATH = ROOT / "src" / "somersault" / "model" / "shipped" / "gymnast.xml"
 
     def test_the_script_writes_the_very_file_that_ships(self) -> None:
-        assert _script().mjcf().encode() == self.PATH.read_bytes()
+        assert program("gymnast").mjcf().encode() == self.PATH.read_bytes()
 
     def test_is_the_athlete_of_that_size(self) -> None:
-        script = _script()
+        script = program("gymnast")
         made, read = athlete(script.HEIGHT, script.MASS), load("gymnast")
         for one, other in zip(made.bodies, read.bodies, strict=True):
             assert one.name == other.name
@@ -562,7 +561,7 @@ class TestShipped:
 
     def test_whole_body_is_mujocos_in_any_pose(self) -> None:
         """Of the unrounded athlete against the file, as MuJoCo weighs it."""
-        script = _script()
+        script = program("gymnast")
         model = athlete(script.HEIGHT, script.MASS)
         theirs = mujoco.MjModel.from_xml_path(str(self.PATH))
         data = mujoco.MjData(theirs)
@@ -581,14 +580,3 @@ class TestShipped:
             # The base's block is about its origin; the centre of mass is `com` from there.
             about = inertia + model.mass * (com @ com * np.eye(3) - np.outer(com, com))
             np.testing.assert_allclose(columns, about, atol=1e-6)
-
-
-def _script() -> ModuleType:
-    path = ROOT / "scripts" / "gymnast.py"
-    spec = importlib.util.spec_from_file_location("gymnast", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module

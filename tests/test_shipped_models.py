@@ -5,15 +5,13 @@ Nothing here imports somersault: these are the numbers everything else stands on
 
 from __future__ import annotations
 
-import importlib.util
-import sys
 from pathlib import Path
-from types import ModuleType
 from typing import NamedTuple
 
 import mujoco
 import numpy as np
 import pytest
+from programs import program
 
 ROOT = Path(__file__).parents[1]
 SHIPPED = ROOT / "src" / "somersault" / "model" / "shipped"
@@ -308,19 +306,19 @@ class TestHumans:
 class TestRigidHumansScript:
     @pytest.mark.parametrize("name", ["layout", "pike", "tuck"])
     def test_writes_the_very_files_that_ship(self, name: str) -> None:
-        script = _script()
+        script = program("rigid_humans")
         written = next(script.mjcf(each) for each in script.POSES if each.name == name)
         assert written.encode() == (SHIPPED / f"human_{name}.xml").read_bytes()
 
     def test_the_table_adds_up(self) -> None:
-        table = _script().TABLE
+        table = program("rigid_humans").TABLE
         paired = sum(row.mass for name, row in table.items() if name not in ("head", "trunk"))
         total = table["head"].mass + table["trunk"].mass + 2 * paired
         assert total == pytest.approx(100, abs=1e-9)
 
     def test_the_trunk_is_the_same_between_other_end_points(self) -> None:
         """De Leva gives it from cervicale and from mid-shoulder to mid-hip; they must agree."""
-        script = _script()
+        script = program("rigid_humans")
         trunk = script.TABLE["trunk"]
         above_hips = trunk.length * (1 - trunk.com / 100)
         from_shoulders = script.SHOULDER_HEIGHT * (1 - 0.431)
@@ -329,7 +327,7 @@ class TestRigidHumansScript:
         np.testing.assert_allclose(trunk.length * np.array(trunk.gyration) / 100, radii, rtol=5e-3)
 
     def test_refuses_a_wrist_out_of_reach(self) -> None:
-        script = _script()
+        script = program("rigid_humans")
         straight = script.Pose("sit", "", hip=1.0, wrist=(1.0, 0.0, 0.0))
         with pytest.raises(ValueError, match=r"sit: the wrist is .* from the shoulder"):
             script.mjcf(straight)
@@ -354,14 +352,3 @@ def _body_inertia(posed: Posed, name: str) -> np.ndarray:
     mujoco.mju_quat2Mat(flat, body.iquat)
     axes = flat.reshape(3, 3)
     return axes @ np.diag(body.inertia) @ axes.T
-
-
-def _script() -> ModuleType:
-    path = ROOT / "scripts" / "rigid_humans.py"
-    spec = importlib.util.spec_from_file_location("rigid_humans", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module

@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
-from functools import cache
-from pathlib import Path
-from types import ModuleType
-
 import numpy as np
 import pytest
+from programs import program
 from scipy.linalg import eig
 
 import somersault as so
@@ -21,18 +16,6 @@ from somersault.thesis import _rudi_gentle as gentle
 from somersault.thesis import _why_compliance as why
 
 KEPT: tuple[rudi.Kept, ...] = ("rudi", "rudi_gentle")
-
-
-@cache
-def _script() -> ModuleType:
-    path = Path(__file__).parents[1] / "scripts" / "rudi.py"
-    spec = importlib.util.spec_from_file_location("rudi", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
 
 
 def _numbers(given: dict[str, float]) -> dict[str, np.ndarray]:
@@ -56,7 +39,7 @@ def test_the_nominal_motions_are_within_limits_and_do_what_they_should(kept: rud
 
 @pytest.mark.parametrize("kept", KEPT)
 def test_what_is_kept_is_the_scripts_motion(kept: rudi.Kept) -> None:
-    script, found = _script(), rudi.data(kept)
+    script, found = program("rudi"), rudi.data(kept)
     shortest = script.GENTLE_SWING if kept == "rudi_gentle" else script.SWING
     paths, done = script.motion(_numbers(found["numbers"]), shortest)
     assert set(paths) == set(found["joints"])
@@ -68,7 +51,7 @@ def test_what_is_kept_is_the_scripts_motion(kept: rudi.Kept) -> None:
 
 def test_the_gentle_motion_keeps_its_bounds_and_a_margin_to_the_limits() -> None:
     found, flight = rudi.data("rudi_gentle"), rudi.nominal("rudi_gentle")
-    assert found["bounds"] == _script().BOUNDS
+    assert found["bounds"] == program("rudi").BOUNDS
     peaks = gentle.peaks()
     assert all(peaks[group] <= bound for group, bound in found["bounds"].items())
     assert abs(flight.landing.tilt) < 0.05
@@ -84,7 +67,7 @@ def test_the_gentle_motion_keeps_its_bounds_and_a_margin_to_the_limits() -> None
 
 
 def test_the_front_is_what_its_numbers_fly() -> None:
-    script, found = _script(), rudi.data("rudi_gentle")
+    script, found = program("rudi"), rudi.data("rudi_gentle")
     for one in found["front"]:
         told, peaks, fastest, _ = script.strained(_numbers(one["numbers"]))
         assert fastest[0] == pytest.approx(one["twist_rate"], abs=0.01)
@@ -97,7 +80,7 @@ def test_the_front_is_what_its_numbers_fly() -> None:
 
 
 def test_the_scripts_torques_are_those_of_the_flight() -> None:
-    script, found = _script(), rudi.data("rudi_gentle")
+    script, found = program("rudi"), rudi.data("rudi_gentle")
     _, peaks, _, _ = script.strained(_numbers(found["numbers"]))
     flight = so.fly(
         rudi.MODEL, rudi.nominal_takeoff("rudi_gentle"), found["landing"], samples=script.FINE

@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike
 
 from somersault._array import Array
 from somersault._errors import SomersaultError
+from somersault._given import shown
 
 Axes = tuple[int, int, int]
 
@@ -39,10 +40,9 @@ def as_axes(axes: Any) -> Axes:
     if not all(isinstance(k, int | np.integer) and not isinstance(k, bool) for k in given) or (
         given not in permutations((1, 2, 3))
     ):
-        shown = " ".join(repr(axes).split())[:60]
         raise SomersaultError(
-            f"axes {shown} are not those of somersault, tilt and twist; give 1, 2 and 3 in some "
-            "order, like (2, 1, 3)"
+            f"axes {shown(axes)} are not those of somersault, tilt and twist; give 1, 2 and 3 in "
+            "some order, like (2, 1, 3)"
         )
     a, b, c = (int(k) for k in given)
     return a, b, c

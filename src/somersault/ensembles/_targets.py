@@ -14,7 +14,7 @@ from somersault.dynamics._tree import parameter_names
 from somersault.ensembles._vary import Vary
 from somersault.flight._columns import Name, Numbers
 from somersault.model import Model
-from somersault.model._mirror import named_pairs, reflection
+from somersault.model._mirror import sides
 
 _JOINT = re.compile(
     r"^joints\.(.+)\.(angle|rate|stiffness|damping|rest|pretension|times|angles)(?:\.(\d+))?$"
@@ -73,15 +73,8 @@ def _spelled(name: Name) -> str:
 def _of_joint(
     model: Model, values: Numbers, where: str, path: str, joint: str, what: str, k: str | None
 ) -> list[Target]:
-    sides = [(joint, 1.0, 0.0)]
-    pair = named_pairs(model).get(joint)
-    if pair is not None and joint not in model.speeds:
-        left, right = (model.speeds[at] for at in (pair.left, pair.right))
-        factor, offset = reflection(model, pair)
-        image = (factor if what in _SIGNED else 1.0, offset if what in _ABOUT else 0.0)
-        sides = [(left, 1.0, 0.0), (right, *image)]
     found = []
-    for name, factor, offset in sides:
+    for name, (factor, offset) in sides(model, joint).items():
         try:
             model.joint(name)
         except SomersaultError as mistake:
@@ -94,7 +87,8 @@ def _of_joint(
             raise SomersaultError(
                 f"{where}: {path} is no number of this takeoff; joint {name} has {', '.join(there)}"
             )
-        found += [Target(n, factor, offset) for n in known]
+        by, about = factor if what in _SIGNED else 1.0, offset if what in _ABOUT else 0.0
+        found += [Target(n, by, about) for n in known]
     return found
 
 

@@ -44,7 +44,7 @@ class Course:
         for name, whole in paths.items():
             whole.check_known(name, duration)
         self._changing = [*paths.values(), *([] if tape is None else [tape])]
-        self._taped = tape is not None
+        self._tape = tape
         self._still = self._lasting(begun)
 
     def _lasting(self, begun: Starts) -> Array:
@@ -72,8 +72,8 @@ class Course:
 
         Where flights have knots of their own some intervals have no length.
         """
-        if self._taped:  # the tape's pieces end at all knots
-            return np.atleast_2d(self._changing[-1].knots)
+        if self._tape is not None:  # its pieces end at all knots
+            return np.atleast_2d(self._tape.knots)
         every = [np.atleast_2d(p.knots) for p in self._changing]
         rows = max([1, *(len(k) for k in every)])
         ends = [np.zeros((rows, 1)), np.full((rows, 1), self.duration)]

@@ -21,7 +21,7 @@ from somersault.flight._numbers import MOST, number
 from somersault.flight._path import DEGREE, Path, check, increasing, moves, polynomial
 from somersault.flight._takeoff import LIMIT_SLACK, JointTakeoff
 from somersault.model import Joint, Model, load
-from somersault.model._mirror import Pair, mirror_pairs, named_pairs, reflection
+from somersault.model._mirror import Pair, mirror_pairs, named_pairs, reflection, sides
 
 _TURNS = 4 * pi  # rad: no joint winds up so far; degrees read as radians soon do
 _BETWEEN = 4  # points within each piece at which limits are checked beside its extremes
@@ -227,15 +227,12 @@ def spread(model: Model, names: Iterable[str]) -> dict[str, tuple[str, float, fl
     pairs = _pairs(model)
     found: dict[str, tuple[str, float, float]] = {}
     for name in names:
-        meant = {name: (name, 1.0, 0.0)}
-        if name in pairs and name not in model.speeds:
-            left, right = (model.speeds[k] for k in (pairs[name].left, pairs[name].right))
-            meant = {left: (name, 1.0, 0.0), right: (name, *reflection(model, pairs[name]))}
-        for joint in meant:
+        meant = sides(model, name) if name in pairs else {name: (1.0, 0.0)}
+        for joint, (factor, offset) in meant.items():
             model.joint(joint)
             if joint in found:
                 raise SomersaultError(f"joint {joint} is given twice, alone and with its pair")
-        found |= meant
+            found[joint] = (name, factor, offset)
     return found
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from somersault._errors import SomersaultError
+from somersault._given import shown
 
 NUMBER, NUMBERS, TEXT, TEXTS, YES, TABLE = (
     "a number",
@@ -18,7 +19,6 @@ NUMBER, NUMBERS, TEXT, TEXTS, YES, TABLE = (
 WHOLE = "a whole number"
 EITHER = "a number, or three for a ball"
 BODY_AXES = "1, 2 and 3 in some order (the body's axes of somersault, tilt and twist)"
-_MOST_SHOWN = 200  # characters of a mistaken value
 
 
 def check_keys(where: str, given: Mapping[str, Any], known: Mapping[str, str]) -> None:
@@ -29,8 +29,7 @@ def check_keys(where: str, given: Mapping[str, Any], known: Mapping[str, str]) -
                 f"{where}{key} is no key of a SPEC; here it takes {', '.join(known)}"
             )
         if not _fits(value, known[key]):
-            shown = repr(value)[:_MOST_SHOWN]
-            raise SomersaultError(f"{where}{key} must be {known[key]}, and is {shown}")
+            raise SomersaultError(f"{where}{key} must be {known[key]}, and is {shown(value)}")
 
 
 def _fits(value: Any, kind: str) -> bool:

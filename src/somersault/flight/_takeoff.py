@@ -13,7 +13,7 @@ from somersault._given import by_name, instance
 from somersault.flight._numbers import MOST, number, numbers
 from somersault.flight._path import Path, check, moves, value
 from somersault.model import Joint, Model
-from somersault.model._mirror import named_pairs, reflection
+from somersault.model._mirror import sides
 
 LIMIT_SLACK = 1e-9  # rad beyond a joint's limits that count as within
 Motion = Literal["locked", "free", "sprung", "prescribed", "compliant"]
@@ -178,19 +178,16 @@ def plans(model: Model, joints: Mapping[str, JointTakeoff]) -> tuple[JointPlan, 
 
 def by_joint(model: Model, joints: Mapping[str, JointTakeoff]) -> dict[str, JointTakeoff]:
     """Takeoffs by the joints' own names, pairs spelled out; SomersaultError as of `plans`."""
-    pairs = named_pairs(model)
     given: dict[str, JointTakeoff] = {}
     for name, takeoff in joints.items():
-        both = {name: takeoff}
-        if name in pairs and name not in model.speeds:
-            left, right = (model.speeds[k] for k in (pairs[name].left, pairs[name].right))
-            mirrored = _mirrored(takeoff, left, *reflection(model, pairs[name]))
-            both = {left: takeoff, right: mirrored}
-        for joint in both:
+        both = sides(model, name)
+        first = next(iter(both))
+        for joint, (factor, offset) in both.items():
             model.joint(joint)
             if joint in given:
                 raise SomersaultError(f"joint {joint} is given twice, alone and with its pair")
-        given |= both
+            image = joint != first
+            given[joint] = _mirrored(takeoff, first, factor, offset) if image else takeoff
     return given
 
 

@@ -64,6 +64,16 @@ def reflection(model: Model, pair: Pair) -> tuple[float, float]:
     return float(pair.sign), right - pair.sign * left
 
 
+def sides(model: Model, name: str) -> dict[str, tuple[float, float]]:
+    """The joint of this name, or both of a pair that is called by it, each with the factor and the
+    offset that make it of the first."""
+    pair = named_pairs(model).get(name)
+    if pair is None or name in model.speeds:
+        return {name: (1.0, 0.0)}
+    left, right = (model.speeds[k] for k in (pair.left, pair.right))
+    return {left: (1.0, 0.0), right: reflection(model, pair)}
+
+
 @dataclass(frozen=True)
 class _Drawn:
     """A body as the file draws it, in the base's axes: frame, centre of mass and inertia."""

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from somersault._array import Array
 from somersault._errors import SomersaultError
 from somersault._given import by_name
-from somersault.model._mirror import named_pairs, reflection
+from somersault.model._mirror import sides
 from somersault.model._types import Joint, Model
 
 
@@ -84,20 +84,11 @@ def spread(
     With `mirrored` the right side gets the sign under which the pair is symmetric (a pose);
     without, both get the same number (a stiffness).
     """
-    pairs = named_pairs(model)
     result: dict[str, ArrayLike] = {}
     for name, value in by_name("what joints get", values).items():
-        if name in pairs and name not in model.speeds:
-            pair = pairs[name]
-            left, right = model.speeds[pair.left], model.speeds[pair.right]
-            both = {left: value, right: value}
-            if mirrored:
-                factor, offset = reflection(model, pair)
-                both[right] = offset + factor * np.asarray(value, float)
-        else:
-            both = {name: value}
-        for speed in both:
+        for speed, (factor, offset) in sides(model, name).items():
             if speed in result:
                 raise SomersaultError(f"{speed} is given twice, by its own name and its pair's")
-        result |= both
+            image = mirrored and (factor, offset) != (1.0, 0.0)
+            result[speed] = offset + factor * np.asarray(value, float) if image else value
     return result

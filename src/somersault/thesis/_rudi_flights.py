@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -10,7 +9,7 @@ import numpy as np
 
 from somersault._array import Array
 from somersault.ensembles._report import landing_error
-from somersault.flight import Flight, fly
+from somersault.flight import Flight, fly, off_nominal
 from somersault.model import named_pose
 from somersault.thesis import _rudi as rudi
 from somersault.thesis._claims import number, statement
@@ -36,7 +35,7 @@ def error(flight: Flight) -> float:
 @cache
 def from_the_corner(frequency: float | None) -> Flight:
     """The flight from −0.1 rad of tilt and of twist."""
-    takeoff = replace(rudi.strategy(frequency), tilt=_CORNER, twist=_CORNER)
+    takeoff = off_nominal(rudi.MODEL, rudi.strategy(frequency), tilt=_CORNER, twist=_CORNER)
     return fly(rudi.MODEL, takeoff, rudi.landing_time(), samples=401, accuracy=1e-8)
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from somersault._array import Array
-from somersault.flight import JointTakeoff, Takeoff, fly
+from somersault.flight import JointTakeoff, Takeoff, fly, off_nominal
 from somersault.thesis import _rudi as rudi
 from somersault.thesis._claims import statement
 from somersault.thesis._entries import Result, Table
@@ -70,7 +70,10 @@ def _opening() -> Array:
     for tilt in (rudi.SPAN, -rudi.SPAN):
         flown = [
             fly(
-                rudi.MODEL, replace(rudi.strategy(f), tilt=tilt), rudi.landing_time(), accuracy=1e-7
+                rudi.MODEL,
+                off_nominal(rudi.MODEL, rudi.strategy(f), tilt=tilt),
+                rudi.landing_time(),
+                accuracy=1e-7,
             )
             for f in (None, best())
         ]
