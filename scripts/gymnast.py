@@ -11,7 +11,7 @@ import numpy as np
 
 from somersault.attitude import quaternion_from_matrix
 from somersault.model import Body, Joint, Model, athlete
-from somersault.model._de_leva import HEEL_BEHIND_ANKLE, MALE
+from somersault.model.athlete._de_leva import HEEL_BEHIND_ANKLE, MALE
 
 PATH = Path(__file__).parents[1] / "src" / "somersault" / "model" / "shipped" / "gymnast.xml"
 HEIGHT = 1.67  # m

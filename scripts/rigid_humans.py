@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from somersault.model._de_leva import (
+from somersault.model.athlete._de_leva import (
     HEEL_BEHIND_ANKLE,
     HIP_HALF_WIDTH,
     MALE,

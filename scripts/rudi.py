@@ -1,6 +1,6 @@
 """Find the rudi: a front somersault with one and a half twists (Playter 1994, section 6.3.1).
 
-    python scripts/rudi.py          # a few minutes; writes src/somersault/thesis/rudi.json
+    python scripts/rudi.py          # a few minutes; writes src/somersault/thesis/ch6/rudi.json
     python scripts/rudi.py gentle   # a quarter of an hour on two cores; rudi_gentle.json; needs cma
 
 The gymnast takes off upright and piked with arms straight out at 12.6 rad/s. A quarter of a hula
@@ -28,10 +28,10 @@ from scipy.optimize import differential_evolution
 
 import somersault as so
 from somersault.dynamics import Equations
-from somersault.dynamics._kernel import use_threads
+from somersault.engine._kernel import use_threads
 from somersault.ensembles._plan import Plan
 
-OUT = Path(__file__).parents[1] / "src/somersault/thesis/rudi.json"
+OUT = Path(__file__).parents[1] / "src/somersault/thesis/ch6/rudi.json"
 GENTLE = OUT.with_name("rudi_gentle.json")
 SOMERSAULT_RATE, TWIST_RATE = 12.6, 40.2  # rad/s, section 6.3.1
 HALF_PI = np.pi / 2

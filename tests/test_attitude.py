@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from somersault import attitude
-from somersault._errors import SomersaultError
+from somersault._core.errors import SomersaultError
 
 many = settings(derandomize=True, max_examples=100, deadline=None)
 QUARTER = np.pi / 2

@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 import somersault as so
-from somersault._errors import SomersaultError
-from somersault.model._biomod import read_biomod
+from somersault._core.errors import SomersaultError
 from somersault.model._types import Model
+from somersault.model.read._biomod import read_biomod
 
 DATA = Path(__file__).parent / "data"
 DIVER = (DATA / "diver.bioMod").read_text("utf-8")

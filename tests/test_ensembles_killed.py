@@ -18,7 +18,7 @@ import xarray as xr
 
 import somersault as so
 from somersault.ensembles._ensemble import carried_out
-from somersault.ensembles._spec import read_ensemble
+from somersault.spec import read_ensemble
 
 SPEC = """
 model = "furrer"

@@ -13,7 +13,7 @@ import somersault as so
 from somersault.cli import main
 from somersault.flight._lock import aligned
 
-RUDI = json.loads((files("somersault.thesis") / "rudi.json").read_text())
+RUDI = json.loads((files("somersault.thesis.ch6") / "rudi.json").read_text())
 PATHS = {name: (path["times"], path["angles"]) for name, path in RUDI["joints"].items()}
 JOINTS = {
     name: so.JointTakeoff("prescribed", times=times, angles=angles)

@@ -13,9 +13,9 @@ import mpmath
 import numpy as np
 import pytest
 
-from somersault.dynamics import _dop853 as table
-from somersault.dynamics import _integrator
-from somersault.dynamics._integrator import STATUS, Integrator, Solution
+from somersault.engine import _dop853 as table
+from somersault.engine import _integrator
+from somersault.engine._integrator import STATUS, Integrator, Solution
 
 ENDED = {name: code for code, name in STATUS.items()}
 

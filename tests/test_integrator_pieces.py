@@ -8,8 +8,8 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from somersault.dynamics import _integrator
-from somersault.dynamics._integrator import STATUS, Integrator, Pieces
+from somersault.engine import _integrator
+from somersault.engine._integrator import STATUS, Integrator, Pieces
 
 rng = np.random.default_rng(11)
 

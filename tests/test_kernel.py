@@ -6,7 +6,8 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from somersault.dynamics import Equations, Kernel, _kernel
+from somersault.dynamics import Equations
+from somersault.engine import Kernel, _kernel
 from somersault.model import load
 
 

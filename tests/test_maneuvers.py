@@ -26,8 +26,8 @@ from somersault.flight._maneuvers import (
     twist_time,
 )
 from somersault.rigid import RigidMotion
-from somersault.thesis import _hula as of_hula
-from somersault.thesis import _techniques as techniques
+from somersault.thesis.ch1 import _techniques as techniques
+from somersault.thesis.ch6 import _hula as of_hula
 
 SHARP = 1e-12
 

@@ -10,12 +10,12 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import somersault as so
-from somersault.flight import _motion_files
-from somersault.flight._motion import Motion
-from somersault.flight._motion_files import read_motion
-from somersault.flight._motion_samples import low_pass, sampled_motion
-from somersault.flight._path import Path as Quintics
-from somersault.flight._path import value
+from somersault.motion import _files as _motion_files
+from somersault.motion._files import read_motion
+from somersault.motion._motion import Motion
+from somersault.motion._path import Path as Quintics
+from somersault.motion._path import value
+from somersault.motion._samples import low_pass, sampled_motion
 
 ELBOW, TWIST = "left_elbow", "torso_twist"
 TIMES = np.arange(301) / 250
@@ -96,8 +96,8 @@ def test_a_flight_follows_a_motion_and_its_recording_alike() -> None:
         so.fly("gymnast", so.Takeoff(angular_momentum=(0, 60, 0), joints=joints), 1.0).landing.twist
         for joints in (
             by_hand,
-            moved.prescribed("gymnast", 1.0),
-            recorded.prescribed("gymnast", 1.0),
+            so.prescribed("gymnast", moved, 1.0),
+            so.prescribed("gymnast", recorded, 1.0),
         )
     ]
     assert twists[1] == twists[0]
@@ -536,14 +536,14 @@ def test_a_recording_ends() -> None:
     """Beyond its end a spline knows nothing; before its beginning neither."""
     times = np.arange(0, 1.2, 0.01)
     motion = so.sampled_motion("gymnast", times, {"elbow": 1 + 0.9 * np.sin(6 * times)})
-    joints = motion.prescribed("gymnast")
+    joints = so.prescribed("gymnast", motion)
     begun = so.Takeoff(angular_momentum=(0, 60, 0), joints=joints)
     assert so.fly("gymnast", begun, 1.19).ended == "duration"
     with pytest.raises(so.SomersaultError, match="recorded") as caught:
         so.fly("gymnast", begun, 1.3)
     assert "\n" not in str(caught.value)
     later = so.Takeoff(
-        angular_momentum=(0, 60, 0), joints=motion.delayed(0.5).prescribed("gymnast")
+        angular_momentum=(0, 60, 0), joints=so.prescribed("gymnast", motion.delayed(0.5))
     )
     for attempt in (
         lambda: so.fly("gymnast", later, 1.0),

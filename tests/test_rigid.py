@@ -12,7 +12,7 @@ from scipy.integrate import quad
 from scipy.special import ellipj, ellipk
 
 from somersault import attitude, rigid
-from somersault._errors import SomersaultError
+from somersault._core.errors import SomersaultError
 from somersault.rigid import RigidMotion
 from somersault.rigid._jacobi import elliptic, first_kind, quarter_period, third_kind
 

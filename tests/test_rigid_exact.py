@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from somersault import attitude
-from somersault._errors import SomersaultError
+from somersault._core.errors import SomersaultError
 from somersault.rigid import RigidMotion, euler_rates, inertia_ratios
 from somersault.rigid._quadrature import period_and_somersault
 

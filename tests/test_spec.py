@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import somersault as so
 from somersault import SomersaultError
 from somersault.cli import main
-from somersault.flight import parse_spec, read_spec
+from somersault.spec import parse_spec, read_spec
 
 LAYOUT = Path(__file__).parents[1] / "examples" / "layout.toml"
 CONTRACT = """

@@ -10,8 +10,9 @@ import pytest
 
 from somersault import SomersaultError
 from somersault.attitude import matrix_from_quaternion
-from somersault.flight import Flight, JointTakeoff, Takeoff, _path, fly
+from somersault.flight import Flight, JointTakeoff, Takeoff, fly
 from somersault.model import GROUND, Body, Joint, Model, load
+from somersault.motion import _path
 
 NAN, INF = float("nan"), float("inf")
 

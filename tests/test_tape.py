@@ -10,12 +10,12 @@ from test_prescribed import GYMNAST, SECONDS, prescribed
 
 import somersault as so
 from somersault.flight._columns import numbers
-from somersault.flight._path import TAPE_DEGREE
 from somersault.flight._start import starts
 from somersault.flight._symbols import PATH
 from somersault.flight._system import system
 from somersault.flight._takeoff import kinds, plans
 from somersault.flight._tape import course
+from somersault.motion._path import TAPE_DEGREE
 
 WRAP = so.named_pose("gymnast", "wrap")
 

@@ -13,10 +13,10 @@ import pytest
 
 from somersault import SomersaultError
 from somersault.thesis import ENTRIES, ERRATA, Entry, Result, reproduce
-from somersault.thesis import _furrer as furrer
-from somersault.thesis import _rigid as rigid
 from somersault.thesis._claims import number, statement
 from somersault.thesis._entries import select
+from somersault.thesis.ch4 import _furrer as furrer
+from somersault.thesis.ch4 import _rigid as rigid
 
 FIELDS = ["id", "where", "claim", "thesis", "computed", "unit", "tolerance", "holds", "note"]
 
@@ -44,7 +44,7 @@ def test_a_changed_number_of_the_thesis_flips_its_claim(monkeypatch):
 
 def test_a_changed_model_flips_claims(monkeypatch):
     """A wrong edge is noticed by the search that does not use the closed form."""
-    from somersault.thesis import _edges as edges
+    from somersault.thesis.ch4 import _edges as edges
 
     true = furrer.edges(edges.ANGLES)
     found = furrer.searched(furrer.TWO, edges.ANGLES)

@@ -7,8 +7,8 @@ import pytest
 from reference_a3 import DOLL, DOLL_WEIGHTED, FURRER, Athlete, matrices, springs
 
 from somersault.thesis import Result
-from somersault.thesis import _doll as doll
-from somersault.thesis import _doll_compared as compared
+from somersault.thesis.ch5 import _doll as doll
+from somersault.thesis.ch5 import _doll_compared as compared
 
 FAIL = {
     "table5-1.rl3-weighted",

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 
 from somersault.flight import JointTakeoff, fly
-from somersault.thesis import _experiment as experiment
-from somersault.thesis import _friction as friction
-from somersault.thesis import _launch as launches_of_one
-from somersault.thesis import _launcher as launcher
-from somersault.thesis import _launches as launches
-from somersault.thesis import _no_ceiling as no_ceiling
-from somersault.thesis import _scatter, _springs_tried
-from somersault.thesis._doll import BEST, WEIGHTED, shoulder_inertia
-from somersault.thesis._experiment import SCATTER, Outcome, Scatter
-from somersault.thesis._launcher import ARMS, BAR_HEIGHT, RELEASE, SPIN, launch
-from somersault.thesis._pulleys import BEST_AT, OMITTED, RADII, SPRINGS, on_pulleys
+from somersault.thesis.ch5 import _experiment as experiment
+from somersault.thesis.ch5 import _friction as friction
+from somersault.thesis.ch5 import _launch as launches_of_one
+from somersault.thesis.ch5 import _launcher as launcher
+from somersault.thesis.ch5 import _launches as launches
+from somersault.thesis.ch5 import _no_ceiling as no_ceiling
+from somersault.thesis.ch5 import _scatter, _springs_tried
+from somersault.thesis.ch5._doll import BEST, WEIGHTED, shoulder_inertia
+from somersault.thesis.ch5._experiment import SCATTER, Outcome, Scatter
+from somersault.thesis.ch5._launcher import ARMS, BAR_HEIGHT, RELEASE, SPIN, launch
+from somersault.thesis.ch5._pulleys import BEST_AT, OMITTED, RADII, SPRINGS, on_pulleys
 
 # ---------------------------------------------------------------------------- launcher
 

@@ -14,13 +14,13 @@ from somersault import stability as st
 from somersault.flight import fly
 from somersault.model._load import _SHIPPED
 from somersault.thesis import ENTRIES, reproduce
-from somersault.thesis import _asymmetry as asymmetry
-from somersault.thesis import _gyric as gyric
-from somersault.thesis import _humans as humans
-from somersault.thesis import _layout as layout
-from somersault.thesis import _reorientation as reorientation
-from somersault.thesis import _ridge as ridge
-from somersault.thesis import _spheres as spheres
+from somersault.thesis.ch2 import _gyric as gyric
+from somersault.thesis.ch2 import _humans as humans
+from somersault.thesis.ch2 import _spheres as spheres
+from somersault.thesis.ch4 import _asymmetry as asymmetry
+from somersault.thesis.ch4 import _layout as layout
+from somersault.thesis.ch4 import _reorientation as reorientation
+from somersault.thesis.ch4 import _ridge as ridge
 from somersault.view import _figure as parts
 from somersault.view._contact_sheet import contact_sheet
 

@@ -23,9 +23,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
-from somersault._given import shown
+from somersault._core.array import Array
+from somersault._core.checks import shown
+from somersault._core.errors import SomersaultError
 
 Axes = tuple[int, int, int]
 

@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Sequence
 from typing import NoReturn, TextIO
 
-from somersault._errors import SomersaultError, SomersaultWarning
+from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault.cli import _ensemble, _equations, _fly, _map, _models, _reproduce, _stability
 
 _COMMANDS = (_models, _stability, _map, _fly, _ensemble, _equations, _reproduce)

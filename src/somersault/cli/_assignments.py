@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from somersault._errors import SomersaultError
+from somersault._core.errors import SomersaultError
 
 
 def assignments(option: str, items: Iterable[str]) -> dict[str, float]:

@@ -61,8 +61,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> None:
     """Fly what is left to fly, and print what it all adds up to."""
     from somersault.ensembles._ensemble import carried_out
-    from somersault.ensembles._spec import read_ensemble
     from somersault.ensembles._summary import summary
+    from somersault.spec import read_ensemble
 
     if chosen.plot is not None:
         check_picture("--plot", chosen.plot)

@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> None:
     """Print the equations or write them to a file."""
-    from somersault._files import write
+    from somersault._core.files import write
     from somersault.dynamics import c_code, latex
     from somersault.model import load
 

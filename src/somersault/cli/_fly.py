@@ -41,9 +41,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> None:
     """Fly, write the history, print how it ended."""
-    from somersault._errors import SomersaultError
-    from somersault.flight import fly, read_spec
+    from somersault._core.errors import SomersaultError
+    from somersault.flight import fly
     from somersault.flight._save import check_ending
+    from somersault.spec import read_spec
 
     if chosen.out is not None:
         check_ending(chosen.out)

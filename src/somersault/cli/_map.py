@@ -11,7 +11,7 @@ from somersault.cli._assignments import assignments
 from somersault.cli._pictures import PICTURES, check_picture, save_picture
 
 if TYPE_CHECKING:
-    from somersault._array import Array
+    from somersault._core.array import Array
 
 NAME = "map"
 HELP = "The momentum sphere of a model held rigid: its energies, separatrix and kinds of motion."
@@ -51,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> None:
     """Print the energies and kinds of motion; draw the map if there is a file for it."""
-    from somersault._errors import SomersaultError
+    from somersault._core.errors import SomersaultError
     from somersault.model import load
     from somersault.stability import spin
 

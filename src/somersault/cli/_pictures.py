@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from somersault._errors import SomersaultError
+from somersault._core.errors import SomersaultError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -21,7 +21,7 @@ def check_picture(option: str, path: Path) -> None:
 
 def save_picture(path: Path, made: Figure) -> None:
     """Write a picture by its file's ending, the same bytes on every day."""
-    from somersault._files import write
+    from somersault._core.files import write
     from somersault.view._style import saved
 
     write(path, saved(made, path.suffix.lower()[1:]))

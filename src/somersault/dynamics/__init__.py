@@ -1,7 +1,6 @@
 """Equations of motion: derived symbolically from a model, compiled, printed."""
 
 from somersault.dynamics._equations import Equations, Expression
-from somersault.dynamics._kernel import Kernel
 from somersault.dynamics._printing import c_code, latex
 
-__all__ = ["Equations", "Expression", "Kernel", "c_code", "latex"]
+__all__ = ["Equations", "Expression", "c_code", "latex"]

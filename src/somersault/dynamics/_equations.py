@@ -17,16 +17,16 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
-from somersault._given import name_list
+from somersault._core.array import Array
+from somersault._core.checks import name_list
+from somersault._core.errors import SomersaultError
 from somersault.dynamics import _composite, _springs
 from somersault.dynamics._articulated import forward_dynamics
-from somersault.dynamics._kernel import Kernel
 from somersault.dynamics._motion import place
 from somersault.dynamics._newton_euler import inverse_dynamics, momentum
 from somersault.dynamics._tree import Tree, parameter_names, parameter_value, tree
 from somersault.dynamics._vector import Mat, Vec, cross, matmul, scale, tilde, transpose, vadd, vsub
+from somersault.engine._kernel import Kernel
 from somersault.model import Model, load
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import casadi as ca
 
-from somersault._errors import SomersaultError
+from somersault._core.errors import SomersaultError
 from somersault.dynamics._equations import Equations
 from somersault.dynamics._newton_euler import inverse_dynamics
 from somersault.dynamics._tree import Tree, parameter_names, parameter_value, tree

@@ -3,22 +3,18 @@
 from somersault.ensembles._ensemble import Ensemble, ensemble
 from somersault.ensembles._report import ENDINGS, Report
 from somersault.ensembles._sensitivity import sensitivity
-from somersault.ensembles._spec import EnsembleSpec, parse_ensemble, read_ensemble
 from somersault.ensembles._summary import failed, fraction, quantiles, within
 from somersault.ensembles._vary import Vary
 
 __all__ = [
     "ENDINGS",
     "Ensemble",
-    "EnsembleSpec",
     "Report",
     "Vary",
     "ensemble",
     "failed",
     "fraction",
-    "parse_ensemble",
     "quantiles",
-    "read_ensemble",
     "sensitivity",
     "within",
 ]

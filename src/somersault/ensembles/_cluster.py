@@ -22,9 +22,9 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from somersault._array import Array
-from somersault._errors import SomersaultError, SomersaultWarning
-from somersault.dynamics._kernel import cores, processor
+from somersault._core.array import Array
+from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault.engine._kernel import cores, processor
 from somersault.ensembles import _run, _store
 from somersault.ensembles._plan import Plan, engines
 from somersault.ensembles._store import Layout

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from somersault._errors import SomersaultError
-from somersault._files import write as write_file
-from somersault._given import by_name, instance, name_list, text, truth, whole_number
+from somersault._core.checks import by_name, instance, name_list, text, truth, whole_number
+from somersault._core.errors import SomersaultError
+from somersault._core.files import write as write_file
 from somersault.ensembles import _run, _store
 from somersault.ensembles._plan import MOST_FLIGHTS, MOST_SEED, Plan, check
 from somersault.ensembles._report import Report

@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
+from somersault._core.array import Array
+from somersault._core.errors import SomersaultError
 from somersault.dynamics._tree import parameter_value
 from somersault.ensembles import _report, _vary
 from somersault.ensembles._report import Report

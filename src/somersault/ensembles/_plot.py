@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from somersault._errors import SomersaultError
+from somersault._core.errors import SomersaultError
 from somersault.ensembles._plan import SAMPLE
 from somersault.ensembles._report import ERROR
 from somersault.ensembles._summary import quantiles, reported

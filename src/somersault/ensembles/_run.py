@@ -7,8 +7,8 @@ from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from itertools import islice
 
-from somersault._array import Array
-from somersault.dynamics._kernel import cores, use_threads
+from somersault._core.array import Array
+from somersault.engine._kernel import cores, use_threads
 from somersault.ensembles._plan import Plan
 from somersault.ensembles._store import Layout
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
-from somersault._array import Array
+from somersault._core.array import Array
 
 _BITS = 16  # a pass
 _WHOLE = 64

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from somersault._errors import SomersaultError
-from somersault._given import whole_number
+from somersault._core.checks import whole_number
+from somersault._core.errors import SomersaultError
 from somersault.ensembles._plan import SAMPLE
 from somersault.ensembles._summary import check_confidence, reported
 from somersault.ensembles._vary import DISTRIBUTIONS

@@ -22,10 +22,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from somersault._array import Array
-from somersault._errors import SomersaultError, SomersaultWarning
-from somersault._files import umask
-from somersault.dynamics._kernel import processor
+from somersault._core.array import Array
+from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.files import umask
+from somersault.engine._kernel import processor
 from somersault.ensembles._plan import SAMPLE, Plan
 from somersault.ensembles._report import ENDINGS, Variable, variables
 

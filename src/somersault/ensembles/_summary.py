@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy import special
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
-from somersault._given import name_list
+from somersault._core.array import Array
+from somersault._core.checks import name_list
+from somersault._core.errors import SomersaultError
+from somersault._core.numbers import number, numbers
 from somersault.ensembles._plan import SAMPLE
 from somersault.ensembles._report import ENDINGS, ERROR, FAILED, UNFLOWN
 from somersault.ensembles._selection import quantiles as selected
 from somersault.ensembles._store import layout
-from somersault.flight._numbers import number, numbers
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
+from somersault._core.array import Array
+from somersault._core.errors import SomersaultError
 from somersault.dynamics._tree import parameter_names
 from somersault.ensembles._vary import Vary
 from somersault.flight._columns import Name, Numbers

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from scipy import special
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
-from somersault._given import text, whole_number
-from somersault.flight._numbers import number, numbers
+from somersault._core.array import Array
+from somersault._core.checks import text, whole_number
+from somersault._core.errors import SomersaultError
+from somersault._core.numbers import number, numbers
 
 SEQUENCES = ("random", "sobol", "halton", "saltelli")
 _EDGE = 2.0**-54  # keeps draws inside (0, 1), where every distribution is finite

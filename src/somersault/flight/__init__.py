@@ -13,20 +13,15 @@ from somersault.flight._maneuvers import (
     torque_twist,
     twist_time,
 )
-from somersault.flight._motion import Motion
-from somersault.flight._motion_files import read_motion
-from somersault.flight._motion_samples import sampled_motion
-from somersault.flight._spec import FlightSpec, parse_spec, read_spec
+from somersault.flight._prescribed import prescribed
 from somersault.flight._swing import Release, Stop, Swing, released, swing
 from somersault.flight._takeoff import JointTakeoff, Takeoff
 
 __all__ = [
     "Flight",
-    "FlightSpec",
     "JointTakeoff",
     "Landing",
     "Maneuver",
-    "Motion",
     "Release",
     "Stop",
     "Swing",
@@ -39,11 +34,8 @@ __all__ = [
     "hula",
     "inertia_change",
     "off_nominal",
-    "parse_spec",
-    "read_motion",
-    "read_spec",
+    "prescribed",
     "released",
-    "sampled_motion",
     "swing",
     "torque_twist",
     "twist_time",

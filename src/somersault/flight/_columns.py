@@ -11,10 +11,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from somersault._array import Array
-from somersault.flight._path import Path, increasing, moves, polynomial
-from somersault.flight._takeoff import LIMIT_SLACK, JointPlan, Takeoff
+from somersault._core.array import Array
+from somersault.flight._takeoff import JointPlan, Takeoff
+from somersault.model import LIMIT_SLACK
 from somersault.model._types import Joint
+from somersault.motion._path import Path, increasing, moves, polynomial
 
 Name = tuple[str | int, ...]
 Numbers = Mapping[Name, "float | Array"]

@@ -13,14 +13,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
-from somersault._given import truth
+from somersault._core.array import Array
+from somersault._core.checks import truth
+from somersault._core.errors import SomersaultError
+from somersault._core.numbers import number
 from somersault.attitude import matrix_from_quaternion
 from somersault.dynamics import Equations
 from somersault.flight._columns import rotation_vector
-from somersault.flight._numbers import number
-from somersault.flight._path import moves, value
 from somersault.flight._start import start
 from somersault.flight._system import system
 from somersault.flight._takeoff import (
@@ -32,8 +31,9 @@ from somersault.flight._takeoff import (
     require_takeoff,
 )
 from somersault.model import Model, load, named_pose
-from somersault.model._athlete_poses import pose_names
 from somersault.model._pose import pose as posed
+from somersault.model.athlete._poses import pose_names
+from somersault.motion._path import moves, value
 
 _FOLLOWING = "following"
 

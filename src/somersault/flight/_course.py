@@ -11,13 +11,13 @@ from functools import cached_property
 
 import numpy as np
 
-from somersault._array import Array
-from somersault.dynamics._integrator import MOST_STEPS, Pieces, Solution
+from somersault._core.array import Array
+from somersault.engine._integrator import MOST_STEPS, Pieces, Solution
 from somersault.flight._columns import Name, Numbers, path, row
-from somersault.flight._path import Path
 from somersault.flight._start import Starts, momentum
 from somersault.flight._system import System
 from somersault.flight._takeoff import JointPlan
+from somersault.motion._path import Path
 
 
 class Course:

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
-from somersault._given import by_name, instance
+from somersault._core.array import Array
+from somersault._core.checks import by_name, instance
+from somersault._core.errors import SomersaultError
+from somersault._core.numbers import number
 from somersault.attitude import quaternion_from_matrix, quaternion_product
 from somersault.flight._flight import Flight
 from somersault.flight._fly import fly
-from somersault.flight._numbers import number
 from somersault.flight._takeoff import JointTakeoff, Takeoff
 from somersault.model import Joint
 from somersault.model._pose import pose, spread

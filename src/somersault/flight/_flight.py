@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from somersault._array import Array
+from somersault._core.array import Array
 from somersault.attitude import matrix_from_quaternion, unwrapped_angles
 from somersault.flight._course import Course
 from somersault.flight._start import Start

@@ -8,13 +8,13 @@ from typing import Literal
 
 import numpy as np
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
-from somersault._given import whole_number
+from somersault._core.array import Array
+from somersault._core.checks import whole_number
+from somersault._core.errors import SomersaultError
+from somersault._core.numbers import number, numbers
 from somersault.attitude import Axes, angles_from_quaternion
-from somersault.dynamics._integrator import STATUS
+from somersault.engine._integrator import STATUS
 from somersault.flight._flight import Flight
-from somersault.flight._numbers import number, numbers
 from somersault.flight._start import Start, start
 from somersault.flight._system import System, system
 from somersault.flight._takeoff import Takeoff, kinds, plans, require_takeoff

@@ -16,18 +16,19 @@ from typing import Any
 
 import numpy as np
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
-from somersault._given import by_name, name_list, whole_number
+from somersault._core.array import Array
+from somersault._core.checks import by_name, name_list, whole_number
+from somersault._core.errors import SomersaultError
+from somersault._core.numbers import number
 from somersault.attitude import in_sequence
 from somersault.dynamics import Equations
 from somersault.flight._flight import Flight
 from somersault.flight._fly import fly
-from somersault.flight._motion import Motion
-from somersault.flight._numbers import number
+from somersault.flight._prescribed import prescribed
 from somersault.flight._takeoff import Takeoff
 from somersault.model import Model, load, named_pose
 from somersault.model._pose import pose as posed
+from somersault.motion._motion import Motion
 
 Keyframes = Mapping[str, Sequence[tuple[float, float]]]
 _SIDES = ("left", "right")
@@ -58,7 +59,7 @@ class Maneuver:
     @cached_property
     def takeoff(self) -> Takeoff:
         """The whole takeoff, its joints prescribed."""
-        return replace(self.start, joints=self.motion.prescribed(self.model))
+        return replace(self.start, joints=prescribed(self.model, self.motion))
 
     def fly(self, **options: Any) -> Flight:
         """The flight, for the whole duration; `options` are those of `somersault.fly`."""

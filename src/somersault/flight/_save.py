@@ -7,8 +7,8 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from somersault._errors import SomersaultError
-from somersault._files import write
+from somersault._core.errors import SomersaultError
+from somersault._core.files import write
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
+from somersault._core.array import Array
+from somersault._core.errors import SomersaultError
 from somersault.attitude import (
     Axes,
     angles_from_quaternion,

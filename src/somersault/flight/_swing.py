@@ -15,16 +15,16 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
-from somersault._given import by_name, instance, whole_number
+from somersault._core.array import Array
+from somersault._core.checks import by_name, instance, whole_number
+from somersault._core.errors import SomersaultError
+from somersault._core.numbers import number, numbers
 from somersault.attitude import quaternion_from_matrix
 from somersault.dynamics import Equations
 from somersault.dynamics._composite import composites
-from somersault.dynamics._integrator import STATUS, Integrator
 from somersault.dynamics._motion import place
 from somersault.dynamics._vector import add, mul, vadd
-from somersault.flight._numbers import number, numbers
+from somersault.engine._integrator import STATUS, Integrator
 from somersault.flight._takeoff import JointTakeoff, Takeoff
 from somersault.model import Body, Joint, Model
 from somersault.model._mounted import Mount

@@ -22,9 +22,9 @@ from somersault.dynamics._newton_euler import inverse_dynamics, momentum
 from somersault.dynamics._springs import torques as spring_torques
 from somersault.dynamics._tree import tree
 from somersault.dynamics._vector import Vec, matvec, solve_symmetric, vsub
-from somersault.flight._path import DEGREE, TAPE_DEGREE, polynomial
 from somersault.flight._takeoff import Kind
 from somersault.model import Joint, Model
+from somersault.motion._path import DEGREE, TAPE_DEGREE, polynomial
 
 ATTITUDE, RATE = 4, 3  # of a state: quaternion and ω
 SPRING = ("stiffness", "rest", "damping", "pretension")  # parameters of a joint that moves

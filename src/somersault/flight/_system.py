@@ -13,10 +13,11 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
-from somersault.dynamics import Equations, Kernel
-from somersault.dynamics._integrator import Integrator
+from somersault._core.array import Array
+from somersault._core.errors import SomersaultError
+from somersault.dynamics import Equations
+from somersault.engine import Kernel
+from somersault.engine._integrator import Integrator
 from somersault.flight._symbols import Symbols, moves_freely
 from somersault.flight._takeoff import Kind
 from somersault.flight._watch import VELOCITIES, longest, watch

@@ -8,14 +8,13 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from somersault._errors import SomersaultError
-from somersault._given import by_name, instance
-from somersault.flight._numbers import MOST, number, numbers
-from somersault.flight._path import Path, check, moves, value
-from somersault.model import Joint, Model
+from somersault._core.checks import by_name, instance
+from somersault._core.errors import SomersaultError
+from somersault._core.numbers import MOST, number, numbers
+from somersault.model import LIMIT_SLACK, Joint, Model
 from somersault.model._mirror import sides
+from somersault.motion._path import Path, check, moves, value
 
-LIMIT_SLACK = 1e-9  # rad beyond a joint's limits that count as within
 Motion = Literal["locked", "free", "sprung", "prescribed", "compliant"]
 _ON_PATHS = ("prescribed", "compliant")
 

@@ -13,15 +13,15 @@ from functools import cache, lru_cache
 import casadi as ca
 import numpy as np
 
-from somersault._array import Array
-from somersault.dynamics import Kernel
+from somersault._core.array import Array
+from somersault.engine import Kernel
 from somersault.flight._columns import Numbers, numbers
 from somersault.flight._course import Course
-from somersault.flight._path import TAPE_DEGREE, Path
 from somersault.flight._start import Starts, starts
 from somersault.flight._system import System, system
 from somersault.flight._takeoff import JointPlan, Takeoff, kinds
 from somersault.model import Model
+from somersault.motion._path import TAPE_DEGREE, Path
 
 _TOLERANCE = 1e-13  # of each step of the nominal flight
 _LEFT_OUT = 1e-11  # of a piece's greatest torque: what the last coefficients may be,

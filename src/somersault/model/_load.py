@@ -10,7 +10,7 @@ from functools import cache
 from importlib.resources import as_file, files
 from pathlib import Path
 
-from somersault._errors import SomersaultError, SomersaultWarning
+from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault.attitude import as_axes
 from somersault.model._types import Model
 
@@ -64,7 +64,7 @@ def _found(source: str | os.PathLike[str] | Model) -> Model:
 
 @cache
 def _shipped(name: str) -> Model:
-    from somersault.model._mujoco import read_mjcf
+    from somersault.model.read._mujoco import read_mjcf
 
     with as_file(_SHIPPED / f"{name}.xml") as path:
         return read_mjcf(path)
@@ -79,15 +79,15 @@ def _read(path: Path) -> Model:
             )
         raise SomersaultError(f"there is no model file {str(path)!r}; check the path")
     if ending == ".biomod":
-        from somersault.model._biomod import read_biomod
+        from somersault.model.read._biomod import read_biomod
 
         return read_biomod(path)
     if ending in (".xml", ".mjcf"):
-        from somersault.model._mujoco import read_mjcf
+        from somersault.model.read._mujoco import read_mjcf
 
         return read_mjcf(path)
     if ending == ".urdf":
-        from somersault.model._mujoco import read_urdf
+        from somersault.model.read._mujoco import read_urdf
 
         return read_urdf(path)
     raise SomersaultError(

@@ -13,7 +13,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from somersault._array import Array
+from somersault._core.array import Array
 from somersault.attitude import from_sequence
 from somersault.model._types import GROUND, Joint, Model
 

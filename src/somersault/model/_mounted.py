@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
-from somersault._given import instance, shown
+from somersault._core.array import Array
+from somersault._core.checks import instance, shown
+from somersault._core.errors import SomersaultError
 from somersault.model._types import GROUND, IDENTITY, ZERO, Body, Matrix, Model, Vector
 from somersault.model._weld import as_matrix, as_vector, merge_welded
 

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
-from somersault._given import by_name
+from somersault._core.array import Array
+from somersault._core.checks import by_name
+from somersault._core.errors import SomersaultError
 from somersault.model._mirror import sides
 from somersault.model._types import Joint, Model
 

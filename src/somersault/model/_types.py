@@ -14,7 +14,7 @@ from typing import Literal
 
 import numpy as np
 
-from somersault._errors import SomersaultError
+from somersault._core.errors import SomersaultError
 from somersault.attitude import AXES, Axes, as_axes
 
 Vector = tuple[float, float, float]
@@ -27,6 +27,7 @@ FREE_IT = (
     "rotations xyz)"
 )
 GROUND = -1
+LIMIT_SLACK = 1e-9  # rad or m beyond a joint's limits that count as within
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from somersault._array import Array
+from somersault._core.array import Array
 from somersault.model._types import GROUND, Body, Matrix, Vector
 
 

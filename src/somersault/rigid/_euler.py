@@ -8,8 +8,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
+from somersault._core.array import Array
+from somersault._core.errors import SomersaultError
 from somersault.rigid._inertia import checked_inertias
 
 Kind = Literal["minor", "major", "separatrix"]

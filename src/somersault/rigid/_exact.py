@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault import attitude
-from somersault._array import Array
-from somersault._errors import SomersaultError
+from somersault._core.array import Array
+from somersault._core.errors import SomersaultError
 from somersault.rigid._euler import Kind, checked_omega, kind_of_motion
 from somersault.rigid._inertia import checked_inertias
 from somersault.rigid._orbit import Orbit, orbit

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from somersault._array import Array
+from somersault._core.array import Array
 
 _CONVERGED = 1e-8  # of the arithmetic–geometric mean; one more step squares it
 _HYPERBOLIC = 1e-9  # k′ (or cn + dn) whose square is lost beside 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from somersault._array import Array
+from somersault._core.array import Array
 from somersault.rigid._inertia import inertia_ratios
 
 

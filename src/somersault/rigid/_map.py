@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
+from somersault._core.array import Array
+from somersault._core.errors import SomersaultError
 from somersault.rigid._euler import energy_bounds
 from somersault.rigid._inertia import checked_inertias
 

@@ -17,7 +17,7 @@ from functools import cached_property
 
 import numpy as np
 
-from somersault._array import Array
+from somersault._core.array import Array
 from somersault.rigid._euler import excess_energy
 from somersault.rigid._jacobi import Elliptic, elliptic, first_kind, quarter_period
 

@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from somersault import attitude
-from somersault._array import Array
+from somersault._core.array import Array
 from somersault.rigid._jacobi import Elliptic, complete_third_kind, elliptic, third_kind
 from somersault.rigid._orbit import Orbit
 

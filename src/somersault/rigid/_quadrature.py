@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from somersault._array import Array
+from somersault._core.array import Array
 
 _STEP = 0.1875  # errors of e^(−π²/step), which is rounding; exact in binary
 _END = 40.0  # integrands fall as e^−|x| beyond their plateau

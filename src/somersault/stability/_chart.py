@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
-from somersault._given import by_name, truth, whole_number
+from somersault._core.array import Array
+from somersault._core.checks import by_name, truth, whole_number
+from somersault._core.errors import SomersaultError
 from somersault.model import Model, load
 from somersault.model._pose import pose as posed
 from somersault.model._pose import spread

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from somersault._array import Array
+from somersault._core.array import Array
 from somersault.model import Model
 from somersault.model._mirror import mirror_pairs
 from somersault.stability._gyric import Attitude, blocks, together

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from somersault._array import Array
+from somersault._core.array import Array
 
 TOLERANCE = 1e-6  # growth rates below this, in units of Ω, count as none
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
+from somersault._core.array import Array
+from somersault._core.errors import SomersaultError
 from somersault.model import Model
 from somersault.model._pose import spread
 from somersault.stability import _gyric

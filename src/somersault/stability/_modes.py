@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from somersault._array import Array
+from somersault._core.array import Array
 from somersault.model._mirror import common_name
 
 if TYPE_CHECKING:

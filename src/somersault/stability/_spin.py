@@ -13,10 +13,11 @@ import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike
 
-from somersault._array import Array
-from somersault._errors import SomersaultError
-from somersault._given import by_name
-from somersault.dynamics import Equations, Kernel
+from somersault._core.array import Array
+from somersault._core.checks import by_name
+from somersault._core.errors import SomersaultError
+from somersault.dynamics import Equations
+from somersault.engine import Kernel
 from somersault.model import Model
 from somersault.model._load import load
 from somersault.model._pose import pose as posed

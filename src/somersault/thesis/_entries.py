@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from somersault._errors import SomersaultError
+from somersault._core.errors import SomersaultError
 from somersault.thesis._claims import Claim
 
 if TYPE_CHECKING:

@@ -2,40 +2,40 @@
 
 from __future__ import annotations
 
-from somersault.thesis._arm_shape import fig_4_20
-from somersault.thesis._asymmetry import fig_4_13
-from somersault.thesis._damping import energy, fig_4_7
-from somersault.thesis._doll import table_5_1
-from somersault.thesis._doll_compared import fig_5_2, fig_5_3, fig_5_5
-from somersault.thesis._edges import sec_4_3
-from somersault.thesis._eigenfrequencies import table_6_1
 from somersault.thesis._entries import Entry
-from somersault.thesis._equations_2 import equations_2
-from somersault.thesis._friction import friction
-from somersault.thesis._gyric import fig_2_1, fig_2_2, fig_2_3, fig_2_4
-from somersault.thesis._hula import sec_6_2, sec_6_3_hula
-from somersault.thesis._humans import fig_2_5, fig_2_6
-from somersault.thesis._launch import sec_5_4
-from somersault.thesis._launches import fig_5_7, fig_5_8
-from somersault.thesis._layout_flights import fig_4_2, sec_4_3_3
-from somersault.thesis._locus import fig_4_6, fig_4_8
-from somersault.thesis._matrices import appendix_a_3, equations
-from somersault.thesis._no_ceiling import ceiling
-from somersault.thesis._regions import fig_4_9, fig_4_10, fig_4_11
-from somersault.thesis._reorientation import fig_4_14, fig_4_15
-from somersault.thesis._ridge import fig_4_12
-from somersault.thesis._rigid import fig_4_5, table_4_1
-from somersault.thesis._rudi_flights import fig_6_1, fig_6_4, fig_6_5
-from somersault.thesis._rudi_gentle import gentle
-from somersault.thesis._rudi_maps import fig_6_2, fig_6_3, momentum, poses
-from somersault.thesis._rule import fig_4_17
-from somersault.thesis._scatter import estimate
-from somersault.thesis._simplest import fig_4_16, table_4_2, table_4_3
-from somersault.thesis._spheres import fig_2_7, fig_2_8, fig_3_3, fig_4_3
-from somersault.thesis._springs_tried import springs_tried
-from somersault.thesis._squares import fig_4_18, fig_4_19
-from somersault.thesis._techniques import fig_1_1
-from somersault.thesis._why_compliance import why
+from somersault.thesis.ch1._techniques import fig_1_1
+from somersault.thesis.ch2._equations_2 import equations_2
+from somersault.thesis.ch2._gyric import fig_2_1, fig_2_2, fig_2_3, fig_2_4
+from somersault.thesis.ch2._humans import fig_2_5, fig_2_6
+from somersault.thesis.ch2._spheres import fig_2_7, fig_2_8, fig_3_3, fig_4_3
+from somersault.thesis.ch4._arm_shape import fig_4_20
+from somersault.thesis.ch4._asymmetry import fig_4_13
+from somersault.thesis.ch4._damping import energy, fig_4_7
+from somersault.thesis.ch4._edges import sec_4_3
+from somersault.thesis.ch4._layout_flights import fig_4_2, sec_4_3_3
+from somersault.thesis.ch4._locus import fig_4_6, fig_4_8
+from somersault.thesis.ch4._matrices import appendix_a_3, equations
+from somersault.thesis.ch4._regions import fig_4_9, fig_4_10, fig_4_11
+from somersault.thesis.ch4._reorientation import fig_4_14, fig_4_15
+from somersault.thesis.ch4._ridge import fig_4_12
+from somersault.thesis.ch4._rigid import fig_4_5, table_4_1
+from somersault.thesis.ch4._rule import fig_4_17
+from somersault.thesis.ch4._simplest import fig_4_16, table_4_2, table_4_3
+from somersault.thesis.ch4._squares import fig_4_18, fig_4_19
+from somersault.thesis.ch5._doll import table_5_1
+from somersault.thesis.ch5._doll_compared import fig_5_2, fig_5_3, fig_5_5
+from somersault.thesis.ch5._friction import friction
+from somersault.thesis.ch5._launch import sec_5_4
+from somersault.thesis.ch5._launches import fig_5_7, fig_5_8
+from somersault.thesis.ch5._no_ceiling import ceiling
+from somersault.thesis.ch5._scatter import estimate
+from somersault.thesis.ch5._springs_tried import springs_tried
+from somersault.thesis.ch6._eigenfrequencies import table_6_1
+from somersault.thesis.ch6._hula import sec_6_2, sec_6_3_hula
+from somersault.thesis.ch6._rudi_flights import fig_6_1, fig_6_4, fig_6_5
+from somersault.thesis.ch6._rudi_gentle import gentle
+from somersault.thesis.ch6._rudi_maps import fig_6_2, fig_6_3, momentum, poses
+from somersault.thesis.ch6._why_compliance import why
 
 ENTRIES = (
     Entry("fig1-1", "Figure 1-1: three techniques in the air", "ch1", fig_1_1),

@@ -8,8 +8,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from somersault._errors import SomersaultError
-from somersault._files import write
+from somersault._core.errors import SomersaultError
+from somersault._core.files import write
 from somersault.thesis._claims import Claim
 from somersault.thesis._entries import Entry, Result, select
 from somersault.thesis._errata import ERRATA

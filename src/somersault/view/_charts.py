@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from somersault._array import Array
+from somersault._core.array import Array
 from somersault.view._style import BLACK, BLUE, GREY, SKY, darkening, label
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from somersault._array import Array
+from somersault._core.array import Array
 from somersault.attitude import matrix_from_quaternion
 from somersault.view import _figure as parts
 from somersault.view import _style as look

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from somersault._array import Array
+from somersault._core.array import Array
 from somersault.attitude import AXES, in_sequence, matrix_from_quaternion
 from somersault.attitude import Axes as BodyAxes
 from somersault.model import GROUND, Body, Joint, Model, load, shipped

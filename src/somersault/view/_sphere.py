@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault import rigid
-from somersault._array import Array
+from somersault._core.array import Array
 from somersault.view import _style as look
 from somersault.view._figure import camera
 

@@ -1,0 +1,129 @@
+"""An athlete from 95 measurements, weighed by the `yeadon` package."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import warnings
+from collections.abc import Mapping
+from importlib import import_module
+from typing import Any, Literal
+
+import numpy as np
+
+from somersault._core.array import Array
+from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault.model._types import Model
+from somersault.model.athlete._athlete import Part, Physique, Shoulders, athlete_model, joined
+from somersault.model.athlete._measurements import read_measurements
+
+Densities = Literal["Chandler", "Clauser", "Dempster"]
+
+# yeadon's axes are 1 left, 2 back, 3 head.
+_AXES = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+
+
+def athlete_from_measurements(
+    source: str | os.PathLike[str] | Mapping[str, float],
+    *,
+    mass: float | None = None,
+    densities: Densities = "Dempster",
+    shoulders: Shoulders = "hinges",
+    knees: bool = False,
+    name: str = "athlete",
+) -> Model:
+    """A gymnast of the shape that 95 measurements give, with thirteen joints.
+
+    `source` is a file as the `yeadon` package reads it, or a mapping from the measurements'
+    names to metres; left and right are averaged. `mass` (kg), or the file's `totalmass`,
+    scales all densities; else the mass follows from `densities`, in kg/m³ by segment. The
+    torso twists at the level of the nipples, as in Yeadon's model. `shoulders` and `knees` are
+    as in `athlete`.
+
+    Raises SomersaultError if yeadon is not installed, for a file or measurement that cannot be
+    used, measurements that enclose no body, and a mass outside 10 to 250 kg. What yeadon had
+    to mend (a cross-section that no stadium has) is a SomersaultWarning.
+    """
+    try:
+        human_type = import_module("yeadon").Human
+    except ImportError:
+        raise SomersaultError(
+            "measurements need the yeadon package; pip install somersault[yeadon]"
+        ) from None
+    if densities not in ("Chandler", "Clauser", "Dempster"):
+        raise SomersaultError(
+            f"densities is {densities!r}; give 'Chandler', 'Clauser' or 'Dempster'"
+        )
+    metres, measured = read_measurements(source, human_type.measnames)
+    human = _weighed(human_type, metres, densities)
+    wanted = measured if mass is None else mass
+    scale = 1.0 if wanted is None else _mass(wanted) / human.mass
+    return athlete_model(name, _physique(human, scale), shoulders, knees)
+
+
+def _mass(value: Any) -> float:
+    if isinstance(value, (int, float, np.number)) and 10 <= value <= 250:
+        return float(value)
+    raise SomersaultError(f"mass is {value!r}; give 10 to 250 kg")
+
+
+def _weighed(human_type: Any, metres: dict[str, float], densities: str) -> Any:
+    """A yeadon Human of those measurements, every solid of which has a mass.
+
+    The mass is not scaled there: yeadon would keep the scaled densities for the next human.
+    """
+    with warnings.catch_warnings(record=True) as mended, contextlib.redirect_stdout(io.StringIO()):
+        warnings.simplefilter("always")
+        try:
+            human = human_type(dict(metres), density_set=densities)
+        except Exception as error:  # whatever it meets in numbers that are no body
+            reason = " ".join(str(error).split()).rstrip(".")[:200] or type(error).__name__
+            raise SomersaultError(
+                f"the measurements make no body: {reason}; correct them"
+            ) from None
+    hollow = [
+        solid.label
+        for segment in human.segments
+        for solid in segment.solids
+        if not (solid.mass > 0 and solid.height > 0)
+    ]
+    if hollow:
+        raise SomersaultError(
+            f"the measurements leave the solid {hollow[0]!r} no volume; correct the lengths there"
+        )
+    stadia = sum("is defined incorrectly" in " ".join(str(w.message).split()) for w in mended)
+    if stadia:
+        warnings.warn(
+            f"{stadia} cross-sections have a perimeter that is not 2 to π times their width; "
+            "yeadon took circles for them",
+            SomersaultWarning,
+            stacklevel=3,
+        )
+    return human
+
+
+def _physique(human: Any, scale: float) -> Physique:
+    """Of a human who stands as yeadon draws it: every segment's axes parallel."""
+
+    def place(segment: Any) -> Array:
+        return _AXES @ segment.pos[:, 0]
+
+    def part(segment: Any) -> Part:
+        com, inertia = segment.rel_center_of_mass[:, 0], segment.rel_inertia
+        return Part(scale * segment.mass, com, scale * inertia).turned(_AXES)
+
+    pelvis, thorax, chest = human.P, human.T, human.C
+    return Physique(
+        lower=joined(part(pelvis), part(thorax).moved(place(thorax))),
+        upper=part(chest),
+        upper_arm=part(human.A1),
+        forearm=part(human.A2),
+        thigh=part(human.J1),
+        shank=part(human.J2),
+        twist=float(place(chest)[2]),
+        shoulder=place(human.A1) - place(chest),
+        hip=place(human.J1),
+        upper_arm_length=human.A1.length,
+        thigh_length=human.J1.length,
+    )

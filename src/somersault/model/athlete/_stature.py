@@ -1,0 +1,95 @@
+"""An athlete from height and mass alone, with the proportions of de Leva's table."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import numpy as np
+
+from somersault._core.checks import one_of
+from somersault._core.errors import SomersaultError
+from somersault.model._types import Model
+from somersault.model.athlete._athlete import HEAD, Part, Physique, Shoulders, athlete_model, joined
+from somersault.model.athlete._de_leva import (
+    HEEL_BEHIND_ANKLE,
+    HIP_HALF_WIDTH,
+    MALE,
+    SHOULDER_HALF_WIDTH,
+    TABLES,
+    Table,
+)
+
+
+def athlete(
+    height: float,
+    mass: float,
+    sex: Literal["male", "female"] = "male",
+    *,
+    shoulders: Shoulders = "hinges",
+    knees: bool = False,
+    name: str = "athlete",
+) -> Model:
+    """A gymnast of a height (m) and mass (kg), with thirteen joints.
+
+    Masses, centres of mass, radii of gyration and lengths are those of the table of de Leva
+    (1996), every length in proportion to the height and every mass to the mass. `shoulders`
+    are three hinges each or a ball; `knees` adds a hinge to each leg, which is else straight.
+    Joint names, signs and what is assumed: docs/athletes.md.
+
+    Raises SomersaultError for a height outside 0.5 to 2.5 m, a mass outside 10 to 250 kg, or
+    another sex or kind of shoulder than those named.
+    """
+    one_of("sex", sex, TABLES)
+    tall = _within("height", height, "m", 0.5, 2.5)
+    heavy = _within("mass", mass, "kg", 10.0, 250.0)
+    return athlete_model(name, _physique(TABLES[sex], tall, heavy), shoulders, knees)
+
+
+def _within(what: str, value: float, unit: str, least: float, most: float) -> float:
+    try:
+        number = math.nan if isinstance(value, bool | np.bool_) else float(value)
+    except (TypeError, ValueError, OverflowError):
+        number = math.nan
+    if least <= number <= most:
+        return number
+    hint = "; it looks like centimetres" if what == "height" and 50 <= number <= 250 else ""
+    raise SomersaultError(f"{what} is {value!r}{hint}; give {least:g} to {most:g} {unit}")
+
+
+def _physique(table: Table, height: float, mass: float) -> Physique:
+    size = height / table.height
+    breadth = height / MALE.height  # of the few lengths that are not in the table
+    row = table.segments
+    single = ("head", "upper_trunk", "middle_trunk", "lower_trunk")
+    share = sum((1 if kind in single else 2) * s.mass for kind, s in row.items() if kind != "trunk")
+
+    def length(kind: str) -> float:
+        return size * row[kind].length
+
+    def hung(kind: str, top: float = 0.0) -> Part:
+        """A segment that runs down from a height over the point it is seen from."""
+        heavy = mass * row[kind].mass / share  # the women's rows add up to 99.99 %
+        com = (top - row[kind].com / 100 * length(kind)) * HEAD
+        return Part(heavy, com, np.diag(row[kind].inertia(heavy, length(kind))))
+
+    lower, middle, upper = (length(f"{k}_trunk") for k in ("lower", "middle", "upper"))
+    return Physique(
+        lower=joined(hung("lower_trunk", lower), hung("middle_trunk", lower + middle)),
+        upper=joined(hung("upper_trunk", upper), hung("head", upper + length("head"))),
+        upper_arm=hung("upper_arm"),
+        forearm=joined(hung("forearm"), hung("hand", -length("forearm"))),
+        thigh=hung("thigh"),
+        shank=joined(hung("shank"), hung("foot", breadth * HEEL_BEHIND_ANKLE - length("shank"))),
+        twist=lower + middle,
+        shoulder=np.array(
+            [
+                0.0,
+                breadth * SHOULDER_HALF_WIDTH,
+                size * table.shoulder_height - lower - middle,
+            ]
+        ),
+        hip=np.array([0.0, breadth * HIP_HALF_WIDTH, 0.0]),
+        upper_arm_length=length("upper_arm"),
+        thigh_length=length("thigh"),
+    )

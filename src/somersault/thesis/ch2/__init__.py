@@ -1,0 +1,1 @@
+"""Chapter 2 of Playter (1994)."""

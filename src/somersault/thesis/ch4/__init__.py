@@ -1,0 +1,1 @@
+"""Chapter 4 of Playter (1994)."""

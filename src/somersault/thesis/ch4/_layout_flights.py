@@ -1,0 +1,307 @@
+"""Figure 4-2, the layout rigid and passive, and the long runs of section 4.3.3."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from somersault import rigid
+from somersault import stability as st
+from somersault.flight import Flight, fly
+from somersault.thesis._claims import Claim, number, statement
+from somersault.thesis._entries import Result, Table
+from somersault.thesis.ch4._furrer import MODEL, NOMINAL
+from somersault.thesis.ch4._layout import (
+    SPIN,
+    TURN,
+    Begun,
+    arms,
+    lifetime,
+    passive,
+    sprung,
+    takeoff,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+STIFFNESS = 1.1  # K_sh of the passive flight; the thesis does not print its own
+_STIFF = (50.0, 5.0)  # K_sh and b/(Ω I_sh) of "very stiff shoulder springs and dampers"
+_WHERE = "§4.1, Figure 4-2"
+
+
+@cache
+def locked(tilt: float = 0.01, twist: float = 0.0) -> Flight:
+    """Eight somersaults with the arms locked, from a tilt and a twist."""
+    start = takeoff(arms(NOMINAL, motion="locked"), tilt, twist)
+    return fly(MODEL, start, 8 * TURN, samples=4001)
+
+
+@cache
+def stiff() -> Flight:
+    """The same with stiff, damped shoulders: the thesis's own way to make the body rigid."""
+    return fly(MODEL, takeoff(sprung(NOMINAL, *_STIFF)), 8 * TURN, samples=4001)
+
+
+def fig_4_2() -> Result:
+    """Tilt, twist and shoulders of the rigid and of the passively stable layout."""
+    soft = passive(NOMINAL, STIFFNESS)
+    turns = soft.landing.somersault / (2 * np.pi)
+    return Result(
+        "Somersaults, twist, tilt and shoulder angles of two simulations. The rigid body goes "
+        "through large excursions; the passively stable one does nearly eight stable somersaults "
+        "about its middle principal axis.",
+        f"Furrer at Γ = {NOMINAL} rad and {SPIN} rad/s from a tilt of 0.01 rad, momentum along the "
+        f"inertial 2 axis; passive with K_sh = {STIFFNESS}: {turns:.2f} somersaults in "
+        f"{soft.landing.time:.2f} s. The thesis prints none of these numbers but Γ and the tilt, "
+        "and those for figure 4-15. Locked arms and arms on stiff, damped springs start alike and "
+        "part: damping takes the body over the separatrix, after which its twist only oscillates, "
+        "as the thesis describes; with locked arms it goes on. Strips: rigid above, passive below, "
+        "every third of a somersault.",
+        (*_passive_claims(soft), *_rigid_claims(), *_stiff_claims()),
+        _draw_4_2(soft),
+    )
+
+
+def _passive_claims(soft: Flight) -> list[Claim]:
+    held = fly(MODEL, takeoff(sprung(NOMINAL, STIFFNESS)), 8 * TURN, until="quarter twist")
+    history, other = soft.dataset, stiff().dataset
+    tilt, twist = (float(np.abs(history[name]).max()) for name in ("tilt", "twist"))
+    far = float(np.abs(other["twist"]).max())
+    swing = [float(np.abs(d["joint_angle"] - d["joint_angle"][0]).max()) for d in (history, other)]
+    return [
+        statement(
+            "fig4-2.eight", _WHERE, "nearly eight stable somersaults of the passive body",
+            "nearly eight", f"{held.landing.somersault / (2 * np.pi):.2f} in {held.times[-1]:.2f} "
+            "s, without a quarter twist",
+            held.ended == "duration" and held.landing.somersault > 7.9 * 2 * np.pi,
+        ),
+        statement(
+            "fig4-2.near", _WHERE, "its tilt and twist stay near zero", "near zero",
+            f"tilt within {np.degrees(tilt):.2f}°, twist within {np.degrees(twist):.1f}°; rigid "
+            f"{np.degrees(float(np.abs(other['tilt']).max())):.1f}° and {np.degrees(far):.0f}°",
+            twist < 0.1 * far and tilt < 0.1 * float(np.abs(other["tilt"]).max()),
+        ),
+        statement(
+            "fig4-2.arms", _WHERE, "tuned springs allow considerable passive arm movement",
+            "considerable", f"up to {np.degrees(swing[0]):.1f}° from 1.3 rad; stiff "
+            f"{np.degrees(swing[1]):.1f}°", swing[0] > 3 * swing[1],
+        ),
+    ]  # fmt: skip
+
+
+def _rigid_claims() -> list[Claim]:
+    """Locked arms, against the exact motion and the curve of its energy."""
+    inertias = st.principal_inertias(MODEL, {"shoulder": NOMINAL})
+    claims = []
+    for name, tilt, twist in (("tilt", 0.01, 0.0), ("twist", 0.0, 0.01)):
+        flown = locked(tilt, twist)
+        found = np.stack([flown.dataset[x].values for x in ("somersault", "tilt", "twist")], -1)
+        h = float(np.linalg.norm(flown.start.momentum))
+        motion = rigid.RigidMotion.from_momentum(inertias, h, flown.start.quaternion)
+        off = float(np.abs(found - motion.angles(flown.times)).max())
+        curve = rigid.energy_curve(inertias, motion.energy, 721, h)
+        most = float(np.abs(rigid.tilt_and_twist(curve)[0]).max())
+        edge = float(np.abs(rigid.tilt_and_twist(rigid.separatrix(inertias, 721))[0]).max())
+        claims += [
+            statement(
+                f"fig4-2.exact-{name}",
+                "§2.5, Appendix A.4",
+                f"rigid layout from a {name} of "
+                "0.01 rad: the integrated flight is the closed-form motion",
+                "A.8 to A.33",
+                f"all three angles to {off:.0e} rad over eight somersaults",
+                off < 1e-7,
+            ),
+            statement(
+                f"fig4-2.excursion-{name}",
+                "§4.1, Figures 4-2, 4-3",
+                "largest tilt of the rigid "
+                f"layout from a {name} of 0.01 rad is that of its curve on the map",
+                "the flight follows its curve of constant energy",
+                f"{np.abs(found[:, 1]).max():.5f} rad flown, {most:.5f} rad on the curve",
+                abs(most - float(np.abs(found[:, 1]).max())) < 1e-4,
+                f"The bound of the energy's curve against the flight; of the separatrix it is "
+                f"{edge:.5f} rad.",
+            ),
+        ]
+    return claims
+
+
+def _stiff_claims() -> list[Claim]:
+    inertias = st.principal_inertias(MODEL, {"shoulder": NOMINAL})
+    flown = stiff()
+    omega = flown.dataset["angular_velocity"].values
+    kinds = [rigid.kind_of_motion(inertias, w) for w in (omega[0], omega[-1])]
+    lost = float(1 - flown.kinetic_energy[-1] / flown.kinetic_energy[0])
+    twist = flown.dataset["twist"].values
+    turns = int(np.sum(np.diff(np.sign(np.diff(twist))) != 0))
+    plain = locked().dataset["twist"].values
+    return [
+        statement(
+            "fig4-2.oscillates", "§4.1", "the rigid body's twist oscillates, on a trajectory about "
+            "the maximum principal axis (front-to-back)", "oscillates about the maximum axis",
+            f"stiff, damped shoulders (K_sh = {_STIFF[0]:g}, b = {_STIFF[1]:g} Ω I_sh): round the "
+            f"{kinds[1]} axis, twist turns back {turns} times within "
+            f"{np.degrees(np.abs(twist).max()):.0f}°",
+            kinds[1] == "major" and turns >= 3 and bool(np.abs(twist).max() < np.pi),
+            f"It starts round the {kinds[0]} axis; its dampers take {100 * lost:.2f} % of the "
+            "energy, and the separatrix is close. With locked arms, which lose nothing, the same "
+            f"start twists on, {np.abs(plain[-1]) / (2 * np.pi):.1f} turns in eight somersaults. "
+            "A start with more twist than tilt oscillates with locked arms too.",
+        ),
+        statement(
+            "fig4-2.large", "§4.1", "rigid tilt and twist periodically move through large "
+            "excursions", "large", f"tilt to {np.degrees(np.abs(flown.dataset['tilt']).max()):.1f}°"
+            f", twist to {np.degrees(np.abs(twist).max()):.0f}°",
+            bool(np.abs(twist).max() > np.pi / 2),
+        ),
+    ]  # fmt: skip
+
+
+def _draw_4_2(soft: Flight) -> Figure:
+    from somersault.view import _style as look
+    from somersault.view._contact_sheet import strip
+
+    made = look.figure(8.2, 9.2)
+    grid = made.subplots(5, 1, height_ratios=(1, 1, 1, 0.75, 0.75))
+    shown = (
+        (soft, look.BLUE, "-", "passive"),
+        (stiff(), look.VERMILION, "--", "rigid: stiff and damped"),
+        (locked(), look.GREY, ":", "rigid: locked"),
+    )
+    for flown, color, dash, name in shown:
+        data = flown.dataset
+        turns = data["somersault"] / (2 * np.pi)
+        grid[0].plot(turns, np.degrees(data["tilt"]), color=color, ls=dash, lw=1.3, label=name)
+        grid[1].plot(turns, np.degrees(data["twist"]), color=color, ls=dash, lw=1.3)
+    for flown, color, dash, _ in shown[:2]:
+        data = flown.dataset
+        turns = data["somersault"] / (2 * np.pi)
+        for joint, sign in (("left_shoulder", 1), ("right_shoulder", -1)):
+            angle = sign * np.degrees(data["joint_angle"].sel(joint=joint))
+            grid[2].plot(turns, angle, color=color, ls=dash, lw=1.3 if sign > 0 else 0.8)
+    grid[0].set_ylabel("tilt (°)")
+    grid[0].legend(loc="upper right", ncols=3, frameon=False, bbox_to_anchor=(1, 1.3))
+    grid[1].set(ylabel="twist (°)", ylim=(-400, 200))
+    look.label(grid[1], 2.75, -330, "locked: twists on", look.GREY)
+    grid[2].set(ylabel="arms up (°)", xlabel="somersaults")
+    grid[2].set_ylim(62, 92)
+    look.label(grid[2], 0.05, 89, "thick: left arm, thin: right arm", look.GREY)
+    for ax in grid[:3]:
+        ax.set_xlim(0, 8)
+    for ax in grid[:2]:
+        ax.axhline(0, color=look.GREY, lw=0.5, zorder=0)
+    times = np.arange(0, 13) * TURN / 3
+    for ax, flown in zip(grid[3:], (stiff(), soft), strict=True):
+        strip(ax, flown, times, words=False)
+    return made
+
+
+# ---------------------------------------------------------------------------- section 4.3.3
+
+_RUNS = ((1.2, 1.4), (1.0, 1.6))  # {K_sh, Γ} of the two runs of 2000 s
+_SHORT = ((0.5, 1.3, 2.3), (1.8, 1.3, 2.7))  # {K_sh, Γ} and lifetimes of another implementation
+_SECONDS = 2000.0
+
+
+@cache
+def long_run(stiffness: float, angle: float, begun: Begun) -> Flight:
+    """2000 s from a tilt of 0.01, or until a quarter twist."""
+    start = takeoff(sprung(angle, stiffness), begun=begun)
+    return fly(MODEL, start, _SECONDS, accuracy=1e-12, samples=20_001, until="quarter twist")
+
+
+def sec_4_3_3() -> Result:
+    """The two runs of 2000 seconds."""
+    claims, rows = [], []
+    for stiffness, angle in _RUNS:
+        for begun in ("rates", "momentum"):
+            flown = long_run(stiffness, angle, begun)
+            name = f"sec4-3-3.{stiffness:g}-{angle:g}-{begun}"
+            claims += _long_claims(name, f"{{{stiffness:g}, {angle:g}}}", flown, begun)
+            rows.append(_row(stiffness, angle, begun, flown))
+    for stiffness, angle, lasts in _SHORT:
+        exact = lifetime(angle, stiffness, "rates")
+        other = lifetime(angle, stiffness, "momentum")
+        claims.append(
+            number(
+                f"sec4-3-3.lifetime-{stiffness:g}",
+                "§4.3.3, Figure 4-12",
+                f"{{K_sh, Γ}} = {{{stiffness:g}, {angle:g}}} from a tilt of 0.01: turns of the "
+                "nominal spin until a quarter twist",
+                lasts,
+                exact,
+                "somersaults",
+                0.05,
+                "The reference is another implementation's, not the thesis's. With the momentum "
+                "along the inertial 2 axis instead of only the somersault's rate at the start "
+                f"{other:.2f}.",
+            )
+        )
+    return Result(
+        "Two simulations from a tilt of 0.01 rad and no twist, {K_sh, Γ} = {1.2, 1.4} and "
+        "{1.0, 1.6}, were stopped after 2000 simulated seconds and over 2750 stable somersaults; "
+        "the maneuver may remain stable indefinitely as long as energy is conserved.",
+        f"So they are, from either reading of the start, at {SPIN} rad/s (the spin is not printed; "
+        "2750 turns in 2000 s are 8.64 rad/s). The quarter twist is looked for at every step of "
+        "the integration. Pictures: {1.2, 1.4} over the last two of its somersaults.",
+        tuple(claims),
+        _draw_4_3_3(),
+        Table(
+            ("K_sh", "Γ rad", "start", "somersaults", "largest tilt °", "largest twist °",
+             "energy drift", "momentum drift"), tuple(rows),
+        ),
+    )  # fmt: skip
+
+
+def _row(stiffness: float, angle: float, begun: str, flown: Flight) -> tuple[str, ...]:
+    history = flown.dataset
+    return (
+        f"{stiffness:g}", f"{angle:g}", begun, f"{flown.landing.somersault / (2 * np.pi):.2f}",
+        f"{np.degrees(float(np.abs(history['tilt']).max())):.2f}",
+        f"{np.degrees(float(np.abs(history['twist']).max())):.2f}",
+        f"{flown.energy_drift or 0:.0e}", f"{flown.momentum_drift:.0e}",
+    )  # fmt: skip
+
+
+def _long_claims(name: str, which: str, flown: Flight, begun: Begun) -> list[Claim]:
+    where = "§4.3.3"
+    turns = flown.landing.somersault / (2 * np.pi)
+    twist = float(np.abs(flown.dataset["twist"]).max())
+    said = {
+        "rates": "only the somersault's rate at the start",
+        "momentum": "momentum along the inertial 2 axis",
+    }[begun]
+    drift = flown.energy_drift
+    assert drift is not None
+    return [
+        statement(
+            f"{name}-somersaults", where, f"{which}: over 2750 stable somersaults in 2000 s",
+            "over 2750", f"{turns:.2f} in {flown.times[-1]:.0f} s, twist within "
+            f"{np.degrees(twist):.2f}°; {said}",
+            flown.ended == "duration" and flown.times[-1] == _SECONDS and turns > 2750,
+        ),
+        statement(
+            f"{name}-energy", where, f"{which}: energy is conserved (to 1e-10)", "conserved",
+            f"relative drift {drift:.1e}", drift < 1e-10,
+        ),
+        statement(
+            f"{name}-momentum", where, f"{which}: angular momentum is conserved (to 1e-10)",
+            "conserved",
+            f"relative drift {flown.momentum_drift:.1e}", flown.momentum_drift < 1e-10,
+        ),
+    ]  # fmt: skip
+
+
+def _draw_4_3_3() -> Figure:
+    from somersault.view._contact_sheet import contact_sheet
+
+    flown = long_run(*_RUNS[0], "momentum")
+    start = takeoff(sprung(_RUNS[0][1], _RUNS[0][0]), begun="momentum")
+    times = _SECONDS - 2 * TURN + np.linspace(0, 2 * TURN, 16)
+    last = fly(MODEL, start, _SECONDS, accuracy=1e-12, samples=times)
+    assert abs(last.landing.somersault - flown.landing.somersault) < 1e-6
+    return contact_sheet(last, times, title="After 2750 somersaults: {K_sh, Γ} = {1.2, 1.4}")

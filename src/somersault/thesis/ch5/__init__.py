@@ -1,0 +1,1 @@
+"""Chapter 5 of Playter (1994)."""

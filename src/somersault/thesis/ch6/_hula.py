@@ -1,0 +1,391 @@
+"""What tilts a twisting somersault: the torque twist (§6.2) and the hula movement (§6.3)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from somersault import rigid
+from somersault._core.array import Array
+from somersault.flight import Flight
+from somersault.flight._maneuvers import (
+    Maneuver,
+    arm_tilt,
+    hula,
+    inertia_change,
+    torque_twist,
+    twist_time,
+)
+from somersault.thesis._claims import Claim, statement
+from somersault.thesis._entries import Result, Table
+from somersault.thesis.ch1._techniques import SHARP, locked, rotation_number, tilted, until
+from somersault.thesis.ch4._reorientation import principal_attitude
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_SIX_2, _WHERE = "§6.2", "§6.3"
+_TILTS = (0.1, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0)  # degrees
+HOLDS = np.arange(0.0, 1.231, 0.03)  # s between hula and extension
+_BEGIN, _QUARTER, _EXTEND = 0.05, 0.2, 0.2  # s
+_RATE = 9.0  # rad/s of somersault in the pike
+ABDUCTED, ADDUCTED = "T", "layout"
+_STYLES: tuple[dict[str, float], ...] = ({}, {"pike": 0.8}, {"pike": 2.0}, {"extend": 0.3})
+
+
+# -------------------------------------------------------------------------------- section 6.2
+
+
+@cache
+def stopped_torque_twist() -> tuple[Maneuver, float, float]:
+    """A torque twist with arms out, ended by leaning the arms: (maneuver, time, amplitude).
+
+    Sought are the moment (s) and the amplitude (rad: the left arm goes up by it, the right
+    one down) after which the momentum lies along a principal axis.
+    """
+    from scipy.optimize import fsolve
+
+    still = torque_twist(pose="T", duration=2.2)
+
+    def leaning(x: Array) -> Maneuver:
+        moves = dict(still.keyframes)
+        for side, sign in (("left", 1), ("right", -1)):
+            angle = np.pi / 2 + sign * float(x[1])
+            ends = (float(x[0]), float(x[0]) + 0.2)
+            moves[f"{side}_shoulder_abduction"] = [(ends[0], np.pi / 2), (ends[1], angle)]
+        return replace(still, keyframes=moves)
+
+    def wrong(x: Array) -> Array:
+        made = leaning(x)
+        tilt, twist = principal_attitude(until(made, float(x[0]) + 0.2))
+        return np.array([np.sin(twist[-1]), tilt[-1]])
+
+    # Half a twist after takeoff the left arm has to go up; see the claims of figure 1-1.
+    found = fsolve(wrong, [twist_time(still, 0.5) - 0.1, 0.6], xtol=1e-12)
+    return leaning(found), float(found[0]), float(found[1])
+
+
+@cache
+def rotation_numbers() -> tuple[tuple[float, float, float, float], ...]:
+    """Tilt (°), and twists a somersault: flown, by elliptic integrals, by quadrature."""
+    rows = []
+    for degrees in _TILTS:
+        made = tilted(float(np.radians(degrees)))
+        exact = locked(made.fly(accuracy=SHARP, samples=[0.0]))
+        rows.append((
+            degrees, rotation_number(made)[0], exact.twists_per_somersault,
+            exact.twists_per_somersault_quadrature(),
+        ))  # fmt: skip
+    return tuple(rows)
+
+
+def _twist_rate(flight: Flight) -> Array:
+    """Least and greatest rate at which the principal axes twist, over the flight, rad/s."""
+    rate = np.gradient(np.unwrap(principal_attitude(flight)[1]), flight.times)
+    return np.array([rate.min(), rate.max()])
+
+
+def _with_arms(pose: str) -> Maneuver:
+    """The torque twist with both arms alike going from the T to a pose, from 0.3 s on."""
+    still = torque_twist(pose="T", duration=2.2)
+    to = inertia_change(poses=("T", pose), begin=0.3, duration=2.2)
+    return replace(still, keyframes=to.keyframes)
+
+
+def sec_6_2() -> Result:
+    """Torque twist and torque-free twist."""
+    still = torque_twist(pose="T", duration=2.2).fly(accuracy=SHARP)
+    rows = {pose: _twist_rate(_with_arms(pose).fly()) for pose in ("layout", "arms_up", "wrap")}
+    slowest = min(float(r[0]) for r in rows.values())
+    made, moment, lean = stopped_torque_twist()
+    ended = made.fly(accuracy=SHARP)
+    after = np.degrees(np.ptp(np.unwrap(principal_attitude(ended)[1])[ended.times >= moment + 0.2]))
+    free = principal_attitude(arm_tilt().fly())[0]
+    tilts = np.degrees([principal_attitude(still)[0][0], free[np.argmax(np.abs(free))]])
+    found = np.array(rotation_numbers())
+    wrong = np.abs(found[:, 1:3] / found[:, 3:] - 1).max()
+    listed = ", ".join(f"{pose} {r[0]:.1f} to {r[1]:.1f}" for pose, r in rows.items())
+    claims = (
+        statement(
+            "sec6-2.torque", _SIX_2, "in the torque twist somersault and twist come from the "
+            "ground, and twist goes on to the landing", "from takeoff on",
+            f"{still.landing.twist / (2 * np.pi):.2f} twists in "
+            f"{still.landing.somersault / (2 * np.pi):.2f} somersaults, never slower than "
+            f"{_twist_rate(still)[0]:.2f} rad/s", bool(_twist_rate(still)[0] > 0),
+        ),
+        statement(
+            "sec6-2.symmetric", _SIX_2, "without a tilt the twist cannot be ended: moves of both "
+            "arms alike only change its rate", "not ended", f"rates of twist in rad/s while the "
+            f"arms go from T to {listed}", slowest > 0,
+            "The thesis says that either twist is one of tilt; this is what follows for landing.",
+        ),
+        statement(
+            "sec6-2.ended", _SIX_2, "arms leant at the right moment end a torque twist too",
+            "the tilt removed", f"one up and one down by {np.degrees(lean):.1f}° from "
+            f"{moment:.3f} s on: then it twists by {after:.2f}° in all until {made.duration:g} s",
+            bool(after < 5),
+        ),
+        statement(
+            "sec6-2.tilt", _SIX_2, "the net effect of either technique is to tilt the principal "
+            "axes", "tilted", f"by {tilts[0]:.2f}° at takeoff of the torque twist, by up to "
+            f"{tilts[1]:.2f}° in the torque-free one, which takes off with {free[0]:.0e}",
+            bool(np.all(np.abs(tilts) > 2) and abs(free[0]) < 1e-9),
+        ),
+        statement(
+            "sec6-2.small", _SIX_2, "even a small tilt of a layout results in twisting", "twists",
+            f"{found[0, 1]:+.3f} a somersault with a tilt of {found[0, 0]:g}°",
+            bool(abs(found[0, 1]) > 0.05),
+        ),
+        statement(
+            "sec6-2.rate", _SIX_2, "the greater the tilt, the greater the twist rate", "greater",
+            f"from {abs(found[0, 1]):.3f} to {abs(found[-1, 1]):.3f} twists a somersault for "
+            f"tilts of {_TILTS[0]:g} to {_TILTS[-1]:g}°",
+            bool(np.all(np.diff(np.abs(found[:, 1])) > 0)),
+        ),
+        statement(
+            "sec6-2.exact", "§6.2, Figure 2-7", "it is the map of rotation that gives the rate",
+            "the map", f"flown, by elliptic integrals and by quadrature twists a somersault agree "
+            f"to {wrong:.0e}", bool(wrong < 1e-8),
+        ),
+    )  # fmt: skip
+    table = Table(
+        ("tilt", "flown", "elliptic integrals", "quadrature"),
+        tuple((f"{r[0]:g}°", *(f"{x:.10f}" for x in r[1:])) for r in rotation_numbers()),
+    )
+    return Result(
+        "A torque twist comes from the ground, a torque-free one from moves of the limbs; both "
+        "tilt the principal axes against the momentum, and the more tilt, the more twist.",
+        "Both techniques flown by the gymnast. The table has twists a somersault of the gymnast "
+        "held in layout.",
+        claims,
+        _draw_6_2(),
+        table,
+    )
+
+
+def _draw_6_2() -> Figure:
+    from somersault.view import _style as look
+
+    made = look.figure(9.2, 3.8)
+    left, right = made.subplots(1, 2)
+    torque = torque_twist(pose="T", duration=2.2).fly()
+    ended = stopped_torque_twist()[0].fly()
+    free = arm_tilt(duration=1.6).fly()
+    for flight, color, words, place, spot in (
+        (torque, look.BLUE, "torque twist", (1.2, 1.62), (1.25, -7.3)),
+        (ended, look.GREEN, "its tilt taken out", (1.1, 0.4), (1.25, -0.7)),
+        (free, look.VERMILION, "torque-free,\nstarted and ended", (0.0, 1.2), (0.82, -3.6)),
+    ):
+        tilt, twist = principal_attitude(flight)
+        left.plot(flight.times, np.unwrap(twist) / (2 * np.pi), color=color)
+        right.plot(flight.times, np.degrees(tilt), color=color)
+        look.label(left, *place, words, color)
+        look.label(right, *spot, words, color)
+    left.set(xlabel="time (s)", ylabel="twists of the principal axes")
+    right.set(xlabel="time (s)", ylabel="tilt of the principal axes (°)")
+    return made
+
+
+# -------------------------------------------------------------------------------- section 6.3
+
+
+@dataclass(frozen=True, eq=False)
+class Extensions:
+    """Hulas that differ in when the hips extend (flight,).
+
+    `moment` is how far the principal axes have twisted, in turns, in the middle of the extension;
+    `tilt` (rad) the mean of theirs over a twist once the body is straight; `swung` how far the
+    hula by itself tilts them; `twists` a somersault afterwards.
+    """
+
+    moment: Array
+    tilt: Array
+    swung: float
+    twists: Array
+
+    @property
+    def inside(self) -> Array:
+        """Which extend between 1/4 and 3/4 twist."""
+        return (self.moment >= 0.25) & (self.moment <= 0.75)
+
+
+def mean_tilt(motion: rigid.RigidMotion, samples: int = 256) -> float:
+    """Mean tilt of a rigid motion against its momentum over a period, rad."""
+    times = np.arange(samples) * motion.period / samples
+    return float(rigid.tilt_and_twist(motion.omega(times) * motion.inertias)[0].mean())
+
+
+@cache
+def extensions(arms: str = ABDUCTED, **style: float) -> Extensions:
+    """The gymnast's hulas with the arms as in a pose until he extends, then at his sides."""
+    rows = []
+    swung = 0.0
+    for hold in HOLDS.tolist():
+        times = {"begin": _BEGIN, "quarter": _QUARTER, "hold": hold, "extend": _EXTEND} | style
+        middle = _BEGIN + _QUARTER + hold + times["extend"] / 2
+        made = hula(spin=_RATE, arms=arms, duration=middle + times["extend"] / 2, **times)
+        flown = made.fly(accuracy=1e-9, samples=200)
+        tilt, twist = principal_attitude(flown)
+        turned = np.interp(middle, flown.times, np.unwrap(twist))
+        if hold == 0.0:
+            swung = float(np.interp(_BEGIN + _QUARTER, flown.times, tilt))
+        after = locked(flown)
+        rows.append((abs(turned) / (2 * np.pi), mean_tilt(after), after.twists_per_somersault))
+    moment, final, twists = np.array(rows).T
+    return Extensions(moment, final, swung, twists)
+
+
+def spread(found: Extensions) -> tuple[float, float, float]:
+    """Least, greatest and mean tilt of those that extend between 1/4 and 3/4 twist, rad."""
+    tilt = np.abs(found.tilt[found.inside])
+    return float(tilt.min()), float(tilt.max()), float(tilt.mean())
+
+
+def sec_6_3_hula() -> Result:
+    """The hula's tilt, the extension's moment and the arms."""
+    found = extensions()
+    least, most, mean = np.degrees(spread(found))
+    claims = (*_tilt_claims(found), _timing_claim(), _best_claim(found), _arms_claim(found))
+    rows = []
+    for style in _STYLES:
+        other = extensions(**style)
+        low, high, middle = np.degrees(spread(other))
+        words = ", ".join(f"{k} {v:g}" for k, v in style.items()) or "pike 1.4, extend 0.2"
+        rows.append((words, f"{np.degrees(abs(other.swung)):.1f}°", f"{low:.1f}°", f"{high:.1f}°",
+                     f"{middle:.1f}°", f"{100 * (high - low) / middle:.0f} %"))  # fmt: skip
+    return Result(
+        "A quarter cycle of hula in a piked somersault tilts the principal axes, more so with the "
+        "arms abducted. The hips should extend between 1/4 and 3/4 twist for the most tilt; "
+        "between these, says Yeadon, the moment is not critical.",
+        f"The gymnast at {_RATE:g} rad/s in a pike of 1.4 rad; in 0.2 s his legs swing from before "
+        "him to 30° left of him, and some time later he extends in 0.2 s, arms to his sides (the "
+        "thesis prints none of this). The moment is the twist of his principal axes in the middle "
+        f"of the extension. Between 1/4 and 3/4 the tilt is {least:.1f} to {most:.1f}°, "
+        f"{mean:.1f}° on average.",
+        claims,
+        _draw_6_3(),
+        Table(("hula", "tilt before extending", "least, 1/4 to 3/4", "most", "mean", "spread"),
+              tuple(rows)),
+    )  # fmt: skip
+
+
+def _tilt_claims(found: Extensions) -> tuple[Claim, ...]:
+    before = _before()
+    sides = hula(side=-np.pi / 6).fly().landing
+    other = hula().fly().landing
+    mirrored = abs(sides.tilt + other.tilt) + abs(sides.twist + other.twist)
+    return (
+        statement(
+            "sec6-3-hula.tilts", _WHERE, "a quarter cycle of hula in a piked somersault tilts the "
+            "principal axes", "tilted", f"from {abs(np.degrees(before)):.2f}° to "
+            f"{np.degrees(found.swung):.2f}° when the legs are at the side; if he extends at once, "
+            f"{np.degrees(found.tilt[0]):.2f}° afterwards",
+            bool(abs(before) < 1e-6 and abs(found.swung) > 0.05 and abs(found.tilt[0]) > 0.05),
+        ),
+        statement(
+            "sec6-3-hula.side", _WHERE, "the side to which the hips swing decides that of the "
+            "twist", "not said", f"legs to the left, {other.twist / (2 * np.pi):.2f} twists; to "
+            f"the right the mirror image to {mirrored:.0e} rad",
+            bool(mirrored < 1e-6 and abs(other.twist) > np.pi),
+        ),
+    )  # fmt: skip
+
+
+def _before() -> float:
+    flown = hula().fly()
+    return float(np.interp(_BEGIN, flown.times, principal_attitude(flown)[0]))
+
+
+def _timing_claim() -> Claim:
+    shares, words = [], []
+    for style in _STYLES:
+        least, most, mean = spread(extensions(**style))
+        shares.append((most - least) / mean)
+        words.append(f"{np.degrees(least):.1f} to {np.degrees(most):.1f}°")
+    listed = ", ".join(f"{100 * share:.0f} %" for share in shares)
+    low, high, _ = spread(extensions(ADDUCTED))
+    return statement(
+        "sec6-3-hula.timing", _WHERE, "between 1/4 and 3/4 twist the moment of the extension is "
+        "not critical to the final tilt (Yeadon)", "not critical",
+        f"tilts of {words[0]}, a spread of {listed} of the mean in four styles of hula",
+        bool(max(shares) < 0.25),
+        "Holds when greatest and least differ by less than a quarter of the mean. With the arms at "
+        f"the sides it is critical: {np.degrees(low):.1f} to {np.degrees(high):.1f}°.",
+    )  # fmt: skip
+
+
+def _best_claim(found: Extensions) -> Claim:
+    least, most, mean = np.degrees(spread(found))
+    outside = np.degrees(np.abs(found.tilt[~found.inside]))
+    best = found.moment[np.argmax(np.abs(found.tilt))]
+    return statement(
+        "sec6-3-hula.best", _WHERE, "extending between 1/4 and 3/4 twist makes the net tilt "
+        "greatest", "greatest", f"greatest at {best:.2f} twists; {least:.1f} to {most:.1f}° "
+        f"between 1/4 and 3/4 ({mean:.1f}° on average), {outside.min():.1f} to "
+        f"{outside.max():.1f}° ({outside.mean():.1f}°) before and after, from "
+        f"{found.moment.min():.2f} to {found.moment.max():.2f}",
+        bool(0.25 <= best <= 0.75 and mean > outside.mean() and least > outside.min()),
+        "Holds when the greatest is between, and mean and least there exceed those outside. At "
+        "half a twist there is a dip, where the bent body's own tilt is least.",
+    )  # fmt: skip
+
+
+def _arms_claim(found: Extensions) -> Claim:
+    other = extensions(ADDUCTED)
+    mine, theirs = np.degrees([abs(found.swung), abs(other.swung)])
+    best = np.degrees([np.abs(x.tilt).max() for x in (found, other)])
+    return statement(
+        "sec6-3-hula.arms", _WHERE, "the effect is increased if the arms are abducted during the "
+        "hula", "increased", f"arms straight out {mine:.2f}° when the legs are at the side and at "
+        f"most {best[0]:.2f}° in the end; at the sides {theirs:.2f}° and {best[1]:.2f}°",
+        bool(mine > theirs and best[0] > best[1]),
+        "With the arms at the sides the bent body turns back by itself at "
+        f"{other.moment.max():.2f} twists, so that it never extends later than that.",
+    )  # fmt: skip
+
+
+def _draw_6_3() -> Figure:
+    from somersault.view import _style as look
+    from somersault.view._contact_sheet import strip
+
+    made = look.figure(9.4, 6.0)
+    grid = made.add_gridspec(2, 2, height_ratios=(1, 1.35))
+    above, left, right = (made.add_subplot(g) for g in (grid[0, :], grid[1, 0], grid[1, 1]))
+    shown = hula(spin=_RATE, hold=0.16, duration=1.0).fly()
+    times = np.array([0.0, 0.12, 0.25, 0.41, 0.51, 0.61, 0.71, 0.81, 0.91])
+    strip(above, shown, times, view=(20.0, 12.0), words=False)
+    size = above.get_ylim()[1] / 1.1
+    for place, time in enumerate(times):
+        look.label(above, 1.7 * size * place, -1.15 * size, f"{time:.2f} s", look.GREY,
+                   ha="center", fontsize=8)  # fmt: skip
+    above.set_title("legs from before the body to its side, and straight")
+    left.axvspan(0.25, 0.75, color=look.PALE, lw=0)
+    for arms, color, words, spot in (
+        (ABDUCTED, look.BLUE, "arms straight out", (0.62, 14.8)),
+        (ADDUCTED, look.VERMILION, "arms at the sides", (0.47, 5.6)),
+    ):
+        found = extensions(arms)
+        on = slice(0, int(np.argmax(found.moment)) + 1)  # then it turns back
+        final = np.degrees(np.abs(found.tilt[on]))
+        left.plot(found.moment[on], final, ".-", color=color, ms=4, lw=1)
+        look.label(left, *spot, words, color)
+    look.label(left, 0.5, 0.8, "1/4 to 3/4 twist", look.GREY, ha="center")
+    left.set(xlabel="twist in the middle of the extension", ylim=(0, 16), xlim=(0, 1.02))
+    left.set_ylabel("mean tilt after it (°)")
+    for hold, color, height in (
+        (0.0, look.SKY, 7.6), (0.16, look.BLUE, 14.7), (0.4, look.BLACK, 10.3)
+    ):  # fmt: skip
+        flown = hula(spin=_RATE, hold=hold, duration=1.4).fly()
+        right.plot(flown.times, np.degrees(np.abs(principal_attitude(flown)[0])), color=color)
+        end = _BEGIN + _QUARTER + hold
+        here = np.degrees(np.interp(end, flown.times, np.abs(principal_attitude(flown)[0])))
+        right.plot(end, here, "o", color=color, ms=6)
+        look.label(
+            right, 1.0, height, f"after a hold of {hold:g} s" if hold else "without a hold", color
+        )
+    right.set(xlabel="time (s)", ylabel="tilt of the principal axes (°)", ylim=(0, 16))
+    look.label(right, 0.55, 2.0, "dots: the hips begin to extend", look.GREY)
+    return made

@@ -1,0 +1,177 @@
+"""The rudi of chapter 6: its motion, and maps of how it lands from off-nominal starts.
+
+The motion is data (rudi.json), found by scripts/rudi.py; the thesis's own was programmed by hand
+and is not printed. Perturbed starts keep the nominal's angular momentum in space. A second motion
+is kept, with bounded joint torques (rudi_gentle.json): what is said of the nominal one can be
+asked of either.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib.resources import files
+from typing import Any, Literal
+
+import numpy as np
+
+from somersault._core.array import Array
+from somersault.ensembles import Report, Vary, ensemble
+from somersault.ensembles._summary import failed
+from somersault.flight import Flight, JointTakeoff, Takeoff, compliant, fly, with_momentum
+from somersault.model import load
+
+MODEL = "gymnast"
+SPAN = 0.1  # rad of tilt and twist at takeoff, figure 6-2
+SMALL = 0.1  # rad of landing error that is small, as the feasibility of this comparison has it
+THEIRS = 30.0  # rad/s, the thesis's best natural frequency
+_STEPS = 3000  # of a flight; the nominal takes some hundreds, and one in gimbal lock no end
+_ACCURACY = 1e-6
+Pose = Literal["wrap", "pike", "following"]
+Kept = Literal["rudi", "rudi_gentle"]
+
+
+@cache
+def data(kept: Kept = "rudi") -> dict[str, Any]:
+    """A motion as it is kept."""
+    return json.loads((files("somersault.thesis.ch6") / f"{kept}.json").read_text())
+
+
+def landing_time(kept: Kept = "rudi") -> float:
+    """When the maneuver ends, s."""
+    return float(data(kept)["landing"])
+
+
+@cache
+def nominal_takeoff(kept: Kept = "rudi") -> Takeoff:
+    """All joints prescribed, upright, at the thesis's 12.6 rad/s."""
+    joints = {
+        name: JointTakeoff("prescribed", times=tuple(path["times"]), angles=tuple(path["angles"]))
+        for name, path in data(kept)["joints"].items()
+    }
+    return with_momentum(MODEL, Takeoff(spin=float(data(kept)["spin"]), joints=joints))
+
+
+@cache
+def nominal(kept: Kept = "rudi") -> Flight:
+    """The nominal flight."""
+    return fly(MODEL, nominal_takeoff(kept), landing_time(kept), samples=801)
+
+
+@cache
+def twist_rate(kept: Kept = "rudi") -> tuple[float, float]:
+    """Greatest twist rate on the way, rad/s, and when, s."""
+    history = nominal(kept).dataset
+    rate = np.abs(np.gradient(history["twist"].values, history["time"].values))
+    return float(rate.max()), float(history["time"][int(rate.argmax())])
+
+
+def scaled(takeoff: Takeoff, factor: float) -> Takeoff:
+    """The same with so many times the angular momentum; a motor tape stays as it is."""
+    assert takeoff.angular_momentum is not None
+    return replace(takeoff, angular_momentum=tuple(factor * h for h in takeoff.angular_momentum))
+
+
+@cache
+def strategy(
+    frequency: float | None, pose: Pose = "wrap", tape: bool = True, kept: Kept = "rudi"
+) -> Takeoff:
+    """Compliant at a natural frequency (rad/s), or prescribed where that is None.
+
+    Gains are from the outboard inertias in the motion's own `pose`: in mid-twist (wrap), at
+    takeoff (pike), or following it.
+    """
+    if frequency is None:
+        return nominal_takeoff(kept)
+    at: float | Literal["following"] = "following"
+    if pose != "following":
+        at = 0.0 if pose == "pike" else twist_rate(kept)[1]
+    return compliant(MODEL, nominal_takeoff(kept), frequency, pose=at, tape=tape)
+
+
+def target(flight: Flight) -> dict[str, float]:
+    """The attitude and the joint angles that a flight lands with."""
+    end = flight.landing
+    return {"somersault": end.somersault, "tilt": end.tilt, "twist": end.twist, **end.joints}
+
+
+@dataclass(frozen=True, eq=False)
+class Landings:
+    """Landing errors e (tilt, twist) over a grid of starts, NaN where a flight failed."""
+
+    starts: Array
+    error: Array
+    failures: int
+
+    @property
+    def share(self) -> float:
+        """Of all starts, those that land with a small error."""
+        return float((self.error < SMALL).sum() / self.error.size)
+
+
+def landings(
+    takeoff: Takeoff, points: int = 21, wanted: Mapping[str, float] | None = None,
+    kept: Kept = "rudi",
+) -> Landings:  # fmt: skip
+    """Flights from a grid of tilt and twist at takeoff, and the error e of section 6.3.2."""
+    grid = {"from": -SPAN, "to": SPAN, "count": points}
+    told = Report(("landing_error",), target=wanted or target(nominal(kept)))
+    found = ensemble(
+        MODEL,
+        takeoff,
+        landing_time(kept),
+        {
+            "takeoff_tilt": Vary("takeoff.tilt", values=grid, unit="rad"),
+            "takeoff_twist": Vary("takeoff.twist", values=grid, unit="rad"),
+        },
+        report=told,
+        accuracy=_ACCURACY,
+        steps=_STEPS,
+    ).dataset
+    return Landings(
+        found["takeoff_tilt"].values,
+        found["landing_error"].values,
+        int(failed(found["ended"]).sum()),
+    )
+
+
+@cache
+def error_map(
+    frequency: float | None, pose: Pose = "wrap", points: int = 21, factor: float = 1.0,
+    own: bool = False, kept: Kept = "rudi",
+) -> Landings:  # fmt: skip
+    """The map of a strategy, at `factor` times the momentum; the error against the nominal
+    landing, or with `own` against the unperturbed one at that momentum."""
+    takeoff = scaled(strategy(frequency, pose, kept=kept), factor)
+    if not own:
+        return landings(takeoff, points, kept=kept)
+    alone = fly(MODEL, takeoff, landing_time(kept), samples=2, accuracy=1e-8)
+    return landings(takeoff, points, target(alone), kept)
+
+
+@cache
+def sensitivity(frequency: float | None, pose: Pose = "wrap") -> Array:
+    """d(somersault, tilt, twist at landing) / d(tilt, twist at takeoff), (3, 2)."""
+    step = 1e-4
+    told = Report(("somersault", "tilt", "twist"))
+    found = ensemble(
+        MODEL,
+        strategy(frequency, pose),
+        landing_time(),
+        {
+            "takeoff_tilt": Vary("takeoff.tilt", samples=[step, -step, 0.0, 0.0]),
+            "takeoff_twist": Vary("takeoff.twist", samples=[0.0, 0.0, step, -step]),
+        },
+        report=told,
+        accuracy=1e-10,
+        steps=10 * _STEPS,
+    ).dataset
+    end = np.array([found[name].values for name in ("somersault", "tilt", "twist")])
+    return np.stack([end[:, 0] - end[:, 1], end[:, 2] - end[:, 3]], 1) / (2 * step)
+
+
+def joint_names() -> tuple[str, ...]:
+    """The thirteen joints."""
+    return tuple(load(MODEL).speeds)
