@@ -2,7 +2,7 @@
 
 from somersault.model._load import load, shipped
 from somersault.model._mounted import Mount, mounted
-from somersault.model._types import GROUND, LIMIT_SLACK, Body, Joint, Model
+from somersault.model._types import GROUND, LIMIT_SLACK, Body, Follow, Joint, Model
 from somersault.model.athlete._measured import athlete_from_measurements
 from somersault.model.athlete._poses import named_pose
 from somersault.model.athlete._stature import athlete
@@ -11,6 +11,7 @@ __all__ = [
     "GROUND",
     "LIMIT_SLACK",
     "Body",
+    "Follow",
     "Joint",
     "Model",
     "Mount",

@@ -31,6 +31,16 @@ LIMIT_SLACK = 1e-9  # rad or m beyond a joint's limits that count as within
 
 
 @dataclass(frozen=True, slots=True)
+class Follow:
+    """What a joint follows: its coordinate is `factor` times that of the joint `leader`, plus
+    `offset` (rad, m). URDF calls it mimic."""
+
+    leader: str
+    factor: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Joint:
     """One joint between a body and its parent; a body may have several, applied in order.
 
@@ -39,7 +49,8 @@ class Joint:
     about `anchor` and its coordinate is a unit quaternion (scalar first, child to parent).
     SI units and radians: `stiffness` N m/rad (N/m for a slide), `rest` the coordinate at
     which the spring is slack, `damping` N m s/rad, `armature` kg m² (the inertia of a geared
-    rotor, as in MJCF). `limits` are the ends of the coordinate's range, or None.
+    rotor, as in MJCF). `limits` are the ends of the coordinate's range, or None. `follows`
+    names the joint that it is geared to.
     """
 
     name: str
@@ -52,6 +63,7 @@ class Joint:
     rest: float = 0.0
     damping: float = 0.0
     armature: float = 0.0
+    follows: Follow | None = None
 
     @property
     def speeds(self) -> int:
@@ -210,6 +222,8 @@ def _check(model: Model) -> None:
         _check_body(model, body)
         for joint in body.joints:
             _check_joint(model, joint)
+            if joint.follows is not None:
+                _check_follow(model, joint, joint.follows)
     if model.mass <= 0:
         raise SomersaultError(f"{model.name} has no mass; give its bodies masses")
     _check_moving_mass(model)
@@ -282,6 +296,25 @@ def _check_joint(model: Model, joint: Joint) -> None:
     for what in ("damping", "armature"):
         if getattr(joint, what) < 0:
             raise SomersaultError(f"{where} has negative {what}; it must be zero or positive")
+
+
+def _check_follow(model: Model, joint: Joint, follow: Follow) -> None:
+    where = f"{model.name}: joint {joint.name!r}"
+    leader = next((j for j in model.joints if j.name == follow.leader), None)
+    if leader is None:
+        raise SomersaultError(f"{where} follows {follow.leader!r}, which is no joint; name one")
+    if "ball" in (joint.kind, leader.kind):
+        raise SomersaultError(
+            f"{where} follows {leader.name!r}, and one of them is a ball; only hinges and slides "
+            "follow each other"
+        )
+    if leader is joint or leader.follows is not None:
+        raise SomersaultError(
+            f"{where} follows {leader.name!r}, which follows a joint itself; name the joint that "
+            "leads them all"
+        )
+    if not (math.isfinite(follow.factor) and math.isfinite(follow.offset)):
+        raise SomersaultError(f"{where} follows by numbers that are not finite; give finite ones")
 
 
 def _check_moving_mass(model: Model) -> None:
