@@ -57,8 +57,10 @@ class Batch:
     @cached_property
     def values(self) -> Mapping[Name, float | Array]:
         """The numbers of the takeoff, and of the bodies that may differ."""
-        of_bodies = {(name,): parameter_value(self.model, name) for name in self.bodies}
-        return {**numbers(self.takeoff, self.joints), **of_bodies}
+        values = numbers(self.takeoff, self.joints)
+        for name in self.bodies:
+            values[(name,)] = parameter_value(self.model, name)
+        return values
 
     def sound(self, values: Numbers, count: int) -> Array:
         """Whether each of `count` flights is one that could be asked for by itself, (count,)."""
