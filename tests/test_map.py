@@ -11,7 +11,8 @@ import pytest
 from somersault import rigid
 from somersault import stability as st
 from somersault.cli import main
-from somersault.view import _sphere, _style
+from somersault.view import _sphere
+from somersault.view import style as look
 
 LAYOUT = st.principal_inertias("human_layout")
 
@@ -40,14 +41,14 @@ def test_energies_lie_between_their_bounds_on_both_sides() -> None:
 @pytest.mark.parametrize(("inertias", "count"), [((3.0, 3.0, 1.0), 4), ((1.0, 3.0, 3.0), 4)])
 def test_a_symmetric_body_has_one_kind_of_curves(inertias: tuple, count: int) -> None:
     assert len(_sphere.energies(inertias, count)) == count
-    with _style.style():
+    with look.style():
         _sphere.sphere_map(inertias, _sphere.energies(inertias, count)).draw_without_rendering()
 
 
 def test_unrolled_curves_are_points_of_their_energy() -> None:
     """Every point drawn in the chart, read as tilt and twist, has one of the energies asked for."""
     levels = _sphere.energies(LAYOUT, 3)
-    with _style.style():
+    with look.style():
         chart = _sphere.sphere_map(LAYOUT, levels).axes[1]
     allowed = np.append(levels, rigid.energy_bounds(LAYOUT, 1.0)[1])
     seen = set()

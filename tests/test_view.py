@@ -8,8 +8,8 @@ import sys
 
 import numpy as np
 
-from somersault.view import _charts as charts
-from somersault.view import _style as look
+from somersault.view import charts
+from somersault.view import style as look
 from somersault.view._report import Section, page
 from somersault.view._sketch import simplest
 
@@ -21,7 +21,7 @@ def test_importing_the_pictures_does_not_load_matplotlib():
 
 def test_figures_need_no_pyplot():
     code = (
-        "import sys, io; from somersault.view import _style as s, _sketch as k\n"
+        "import sys, io; from somersault.view import style as s, _sketch as k\n"
         "with s.style(): k.simplest().savefig(io.BytesIO(), format='png')\n"
         "sys.exit('matplotlib.pyplot' in sys.modules)"
     )

@@ -109,9 +109,10 @@ def _title(name: str, pose: dict[str, float]) -> str:
 
 
 def _draw(path: Path, inertias: Array, count: int, title: str) -> None:
-    from somersault.view import _sphere, _style
+    from somersault.view import _sphere
+    from somersault.view import style as look
 
-    with _style.style():
+    with look.style():
         save_picture(path, _sphere.sphere_map(inertias, _sphere.energies(inertias, count), title))
 
 

@@ -22,6 +22,6 @@ def check_picture(option: str, path: Path) -> None:
 def save_picture(path: Path, made: Figure) -> None:
     """Write a picture by its file's ending, the same bytes on every day."""
     from somersault._core.files import write
-    from somersault.view._style import saved
+    from somersault.view.style import saved
 
     write(path, saved(made, path.suffix.lower()[1:]))

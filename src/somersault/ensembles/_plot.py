@@ -10,7 +10,7 @@ from somersault._core.errors import SomersaultError
 from somersault.ensembles._plan import SAMPLE
 from somersault.ensembles._report import ERROR
 from somersault.ensembles._summary import quantiles, reported
-from somersault.view import _style as look
+from somersault.view import style as look
 
 if TYPE_CHECKING:
     import xarray as xr

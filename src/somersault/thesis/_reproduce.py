@@ -14,7 +14,7 @@ from somersault.thesis._claims import Claim
 from somersault.thesis._entries import Entry, Result, select
 from somersault.thesis._errata import ERRATA
 from somersault.thesis._registry import ENTRIES
-from somersault.view import _style
+from somersault.view import style as look
 from somersault.view._report import Section, page
 
 
@@ -50,7 +50,7 @@ def _made(chosen: Sequence[Entry], folder: Path, progress: bool) -> list[Claim]:
     sections: list[Section] = []
     claims: list[Claim] = []
     for entry in _watched(chosen, progress):
-        with _style.style():
+        with look.style():
             result = entry.make()
             if result.figure is not None:
                 _save(result.figure, folder / "figures" / entry.id)
@@ -93,7 +93,7 @@ def _save(figure: Any, stem: Path) -> None:
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # laid out once, and the same in both files
     for ending in ("svg", "png"):
-        write(stem.with_name(f"{stem.name}.{ending}"), _style.saved(figure, ending))
+        write(stem.with_name(f"{stem.name}.{ending}"), look.saved(figure, ending))
 
 
 def _section(entry: Entry, result: Result) -> Section:

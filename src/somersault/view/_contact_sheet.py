@@ -10,7 +10,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault.attitude import matrix_from_quaternion
 from somersault.view import _figure as parts
-from somersault.view import _style as look
+from somersault.view import style as look
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from somersault.view._charts import filled, locus, stroboscopic
-from somersault.view._style import BLUE, GREEN, figure, label, style
+from somersault.view.charts import filled, locus, stroboscopic
+from somersault.view.style import BLUE, GREEN, figure, label, style
 
 if TYPE_CHECKING:
     import xarray as xr

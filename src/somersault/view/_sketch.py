@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from somersault.view._style import BLACK, BLUE, ORANGE, PALE, VERMILION, figure, label, pointer
+from somersault.view.style import BLACK, BLUE, ORANGE, PALE, VERMILION, figure, label, pointer
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

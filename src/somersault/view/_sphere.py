@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from somersault import rigid
 from somersault._core.array import Array
-from somersault.view import _style as look
+from somersault.view import style as look
 from somersault.view._figure import camera
 
 if TYPE_CHECKING:

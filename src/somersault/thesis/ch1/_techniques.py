@@ -255,7 +255,7 @@ def _twists_at(maneuver: Maneuver, time: float) -> float:
 
 
 def _draw_1_1() -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
     from somersault.view._contact_sheet import strip
 
     made = look.figure(10.0, 6.2)

@@ -43,7 +43,7 @@ def fig_2_1() -> Result:
     from somersault import attitude
     from somersault.model import load
     from somersault.view import _figure as parts
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     steps = ((0, 0, 0), (50, 0, 0), (50, 25, 0), (50, 25, 70))
     names = (
@@ -141,8 +141,8 @@ def fig_2_2() -> Result:
 
 
 def _draw_2_2() -> Figure:
-    from somersault.view import _charts as charts
-    from somersault.view import _style as look
+    from somersault.view import charts
+    from somersault.view import style as look
 
     made = look.figure(6.4, 6.2)
     ax = made.add_subplot()
@@ -167,7 +167,7 @@ def _prism(ax: Axes, k1: float, k3: float) -> None:
     """The uniform box of these ratios, beside its point."""
     from matplotlib.patches import Polygon
 
-    from somersault.view import _style as look
+    from somersault.view import style as look
     from somersault.view._figure import camera
 
     i = rigid.inertias_from_ratios(k1, k3)
@@ -211,8 +211,8 @@ def fig_2_3() -> Result:
 
 
 def _draw_2_3(ratios: Array, stable: Array) -> Figure:
-    from somersault.view import _charts as charts
-    from somersault.view import _style as look
+    from somersault.view import charts
+    from somersault.view import style as look
 
     made = look.figure(4.8, 4.7)
     ax = made.add_subplot()
@@ -282,8 +282,8 @@ def fig_2_4() -> Result:
 
 
 def _draw_2_4() -> Figure:
-    from somersault.view import _charts as charts
-    from somersault.view import _style as look
+    from somersault.view import charts
+    from somersault.view import style as look
 
     made = look.figure(5.4, 5.2)
     ax = made.add_subplot()

@@ -41,7 +41,7 @@ def fig_2_5() -> Result:
 
 def _draw_2_5() -> Figure:
     from somersault.view import _figure as parts
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     made = look.figure(7.2, 3.6)
     ax = made.add_subplot()
@@ -138,8 +138,8 @@ def _path(count: int = 60) -> tuple[Array, Array]:
 
 
 def _draw_2_6(path: Array) -> Figure:
-    from somersault.view import _charts as charts
-    from somersault.view import _style as look
+    from somersault.view import charts
+    from somersault.view import style as look
 
     made = look.figure(5.2, 5.0)
     ax = made.add_subplot()

@@ -47,7 +47,7 @@ def fig_2_7() -> Result:
 
 def _map_with_dot(inertias: Array, title: str) -> Figure:
     from somersault.view import _sphere
-    from somersault.view import _style as look
+    from somersault.view import style as look
     from somersault.view._figure import camera
 
     made = _sphere.sphere_map(inertias, _sphere.energies(inertias, 6), title)
@@ -186,7 +186,7 @@ def fig_2_8() -> Result:
 def _draw_2_8() -> Figure:
     from matplotlib.patches import Circle
 
-    from somersault.view import _style as look
+    from somersault.view import style as look
     from somersault.view._figure import camera
 
     made = look.figure(5.0, 4.8)

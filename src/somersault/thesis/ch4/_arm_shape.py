@@ -126,8 +126,8 @@ def _arch(points: Array, angles: Array, stiffness: Array) -> bool:
 
 
 def _draw_4_20(ours: Array) -> Figure:
-    from somersault.view import _charts as charts
-    from somersault.view import _style as look
+    from somersault.view import charts
+    from somersault.view import style as look
 
     made = look.figure(7.0, 5.0)
     ax = made.add_subplot()

@@ -117,7 +117,7 @@ def fig_4_13() -> Result:
 
 def _draw_4_13(flown: Flight, body: float, incline: float) -> Figure:
     from somersault.view import _figure as parts
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     made = look.figure(7.4, 4.2)
     ax = made.add_subplot()

@@ -137,8 +137,8 @@ def _light(damping: float) -> tuple[float, int, int]:
 
 
 def _draw_4_7(roots: Array, moving: Array, best: int) -> Figure:
-    from somersault.view import _charts as charts
-    from somersault.view import _style as look
+    from somersault.view import charts
+    from somersault.view import style as look
 
     made = look.figure(9.2, 5.2)
     ax, rate = made.subplots(1, 2, width_ratios=(1.1, 1))
@@ -202,8 +202,8 @@ def energy() -> Result:
 
 
 def _draw_energy(layout: xr.Dataset, wheel: xr.Dataset) -> Figure:
-    from somersault.view import _charts as charts
-    from somersault.view import _style as look
+    from somersault.view import charts
+    from somersault.view import style as look
 
     made = look.figure(9.2, 7.4)
     (left, right), (low_left, low_right) = made.subplots(2, 2, height_ratios=(1.4, 1))

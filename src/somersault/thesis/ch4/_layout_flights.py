@@ -162,7 +162,7 @@ def _stiff_claims() -> list[Claim]:
 
 
 def _draw_4_2(soft: Flight) -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
     from somersault.view._contact_sheet import strip
 
     made = look.figure(8.2, 9.2)

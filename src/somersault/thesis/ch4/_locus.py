@@ -235,8 +235,8 @@ def _stroboscopic() -> list[Claim]:
 
 
 def _draw_4_6(roots: Array, low: float, high: float) -> Figure:
-    from somersault.view import _charts as charts
-    from somersault.view import _style as look
+    from somersault.view import charts
+    from somersault.view import style as look
 
     made = look.figure(7.0, 5.6)
     ax = made.add_subplot(title="Roots at Γ = 1.3 rad, undamped")
@@ -304,8 +304,8 @@ def fig_4_8() -> Result:
 
 
 def _draw_4_8(loci: list[Array], rows: list[tuple[str, str]]) -> Figure:
-    from somersault.view import _charts as charts
-    from somersault.view import _style as look
+    from somersault.view import charts
+    from somersault.view import style as look
 
     made = look.figure(8.6, 9.0)
     grid = made.subplots(3, 3, sharex=True, sharey=True)

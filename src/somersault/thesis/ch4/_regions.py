@@ -209,8 +209,8 @@ def _same_top() -> Claim:
 
 
 def _draw_4_9() -> Figure:
-    from somersault.view import _charts as charts
-    from somersault.view import _style as look
+    from somersault.view import charts
+    from somersault.view import style as look
 
     made = look.figure(7.4, 5.4)
     ax = made.add_subplot()
@@ -234,8 +234,8 @@ def _draw_4_9() -> Figure:
 
 
 def draw_part(subsystem: str, title: str, words: tuple[float, float, str]) -> tuple[Figure, Axes]:
-    from somersault.view import _charts as charts
-    from somersault.view import _style as look
+    from somersault.view import charts
+    from somersault.view import style as look
 
     made = look.figure(7.0, 5.0)
     ax = made.add_subplot()
@@ -295,7 +295,7 @@ def _one_peak(widths: Array) -> bool:
 
 
 def _draw_4_10() -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     made, ax = draw_part(THREE, "Tilt, twist and asymmetric arms", (1.42, 0.95, "stable"))
     look.pointer(ax, (1.55, 1.18), (1.9, 1.9), "above: a root leaves zero,\ntilt and twist diverge")

@@ -54,7 +54,7 @@ _NEAR = (
 
 
 def _near_the_origin(ax: Axes, dots: bool = True) -> None:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     for tilt, twist in _both_ways(_NEAR):
         line = ax.plot(twist, tilt, color=look.GREY, lw=0.6, zorder=1)[0]
@@ -127,7 +127,7 @@ def fig_4_14() -> Result:
 
 
 def _draw_4_14() -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     made = look.figure(7.2, 5.0)
     ax = made.add_subplot()
@@ -243,7 +243,7 @@ def _claims_4_15(
 
 
 def _draw_4_15(tilt: Array, twist: Array, mine: tuple[Array, Array]) -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     made = look.figure(9.4, 4.4)
     grid = made.subplots(1, 2, sharex=True, sharey=True)

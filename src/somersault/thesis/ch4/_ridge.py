@@ -192,7 +192,7 @@ def _joint_claims(counts: list[int]) -> list[Claim]:
 
 
 def _draw_4_12() -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     made = look.figure(9.6, 4.1)
     grid = made.subplots(1, 3, sharey=True)

@@ -186,8 +186,8 @@ def _claims_4_5(angles: Array, k1: Array, k3: Array) -> list[Claim]:
 
 
 def _draw_4_5(angles: Array, k1: Array, k3: Array) -> Figure:
-    from somersault.view import _charts as charts
-    from somersault.view import _style as look
+    from somersault.view import charts
+    from somersault.view import style as look
 
     made = look.figure(8.6, 4.4)
     whole, near = made.subplots(1, 2, width_ratios=(1, 1.1))

@@ -76,7 +76,7 @@ def fig_4_17() -> Result:
 
 
 def _draw_4_17() -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     made, ax = draw_part(THREE, "The rule: cancel the centrifugal term", (1.4, 0.83, "stable"))
     edge = edges(FINE)

@@ -148,8 +148,8 @@ def fig_4_19() -> Result:
 def _draw(
     panels: Sequence[Array], names: Sequence[str], shares: Sequence[float], relative: float | None
 ) -> Figure:
-    from somersault.view import _charts as charts
-    from somersault.view import _style as look
+    from somersault.view import charts
+    from somersault.view import style as look
 
     made = look.figure(8.2, 8.8)
     grid = made.subplots(3, 3, sharex=True, sharey=True)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _NEAR = 0.1  # "nearly the same" inertia ratio: within a tenth of the diagram's axis
 _LOW, _HIGH, _STEP = 0.7, 1.4, 0.1  # §5.5's stabilising K_sh at Γ = 1.57, printed in tenths
-# Each model's colour (vermilion, blue, black of view/_style.py) and line.
+# Each model's colour (vermilion, blue, black of view/style.py) and line.
 _LOOKS = {MODEL: ("#D55E00", "-"), WEIGHTED: ("#0072B2", (0, (1, 1))), BARE: ("#000000", "--")}
 
 
@@ -118,8 +118,8 @@ def _heavier_body() -> tuple[float, float]:
 
 
 def _draw_5_2(human: tuple[Array, Array], dolls: dict[str, tuple[Array, Array]]) -> Figure:
-    from somersault.view import _charts as charts
-    from somersault.view import _style as look
+    from somersault.view import charts
+    from somersault.view import style as look
 
     made = look.figure(9.0, 4.4)
     square, along = made.subplots(1, 2, width_ratios=(1.15, 1))
@@ -205,7 +205,7 @@ def fig_5_3() -> Result:
 
 
 def _draw_5_3(relative: dict[str, Array]) -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     made = look.figure(6.2, 3.9)
     ax = made.add_subplot()
@@ -393,8 +393,8 @@ def _compared() -> Table:
 
 
 def _draw_5_5() -> Figure:
-    from somersault.view import _charts as charts
-    from somersault.view import _style as look
+    from somersault.view import charts
+    from somersault.view import style as look
 
     made = look.figure(9.4, 4.8)
     whole, near = made.subplots(1, 2, width_ratios=(1.2, 1))

@@ -138,7 +138,7 @@ def _claims() -> list[Claim]:
 
 
 def _draw() -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     made = look.figure(9.2, 4.0)
     left, right = made.subplots(1, 2)

@@ -261,7 +261,7 @@ def carried(made: Launch) -> float:
 
 
 def _draw(made: Launch) -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     picture = look.figure(9.4, 5.0)
     grid = picture.add_gridspec(2, 2, width_ratios=(1.05, 1.25))
@@ -301,7 +301,7 @@ def _draw(made: Launch) -> Figure:
 def _draw_laboratory(ax: object, made: Launch) -> None:
     from matplotlib.axes import Axes
 
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     assert isinstance(ax, Axes)
     times = np.linspace(0, made.time(), 200)

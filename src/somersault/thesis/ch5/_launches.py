@@ -257,7 +257,7 @@ def _claims_5_8(many: Outcome) -> list[Claim]:
 
 
 def _axes(ax: Axes) -> Array:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     at = np.array([*SPRINGS, _CLAMPED_AT])
     ax.set_xticks([0, 0.5, 1.0, 1.5, 2.0, _CLAMPED_AT], ["0", "0.5", "1", "1.5", "2", "clamped"])
@@ -273,7 +273,7 @@ def _bars(ax: Axes, x: Array, y: Array, reach: Any, color: str, marker: str, nam
 
 
 def _draw_5_7(few: Outcome, many: Outcome) -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     made = look.figure(7.4, 4.3)
     ax = made.add_subplot()
@@ -290,7 +290,7 @@ def _draw_5_7(few: Outcome, many: Outcome) -> Figure:
 
 
 def _draw_5_8(few: Outcome, wide: xr.Dataset, narrow: xr.Dataset) -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     made = look.figure(7.4, 4.3)
     ax = made.add_subplot()

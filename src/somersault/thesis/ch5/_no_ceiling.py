@@ -178,7 +178,7 @@ def _claims(at: int) -> list[Claim]:
 
 
 def _draw() -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     made = look.figure(9.2, 4.2)
     left, right = made.subplots(1, 2)

@@ -167,7 +167,7 @@ def sec_6_2() -> Result:
 
 
 def _draw_6_2() -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     made = look.figure(9.2, 3.8)
     left, right = made.subplots(1, 2)
@@ -348,7 +348,7 @@ def _arms_claim(found: Extensions) -> Claim:
 
 
 def _draw_6_3() -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
     from somersault.view._contact_sheet import strip
 
     made = look.figure(9.4, 6.0)

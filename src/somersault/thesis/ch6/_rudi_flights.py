@@ -173,7 +173,7 @@ def _tracking(flight: Flight) -> Array:
 
 
 def _draw_worked(flight: Flight) -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     made = look.figure(7.2, 7.4)
     axes = made.subplots(4, sharex=True)

@@ -152,7 +152,7 @@ def _of_the_maps(
 
 
 def _draw(front: list[dict], stiff: rudi.Landings) -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     made = look.figure(8.4, 3.9)
     left, right = made.subplots(1, 2)

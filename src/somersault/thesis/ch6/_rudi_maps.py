@@ -210,7 +210,7 @@ def momentum() -> Result:
 
 
 def _draw_map(found: rudi.Landings, title: str) -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     made = look.figure(5.6, 4.6)
     ax = made.subplots()
@@ -228,7 +228,7 @@ def _draw_map(found: rudi.Landings, title: str) -> Figure:
 
 
 def _draw_scan(shares: dict, stiff: float) -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     made = look.figure(6.6, 4.2)
     ax = made.subplots()

@@ -168,7 +168,7 @@ def _words(crossing: float | None) -> str:
 
 
 def _draw(found: Array) -> Figure:
-    from somersault.view import _style as look
+    from somersault.view import style as look
 
     made = look.figure(8.4, 3.9)
     grid = made.subplots(1, 2, sharey=True)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
-from somersault.view._style import BLACK, BLUE, GREY, SKY, darkening, label
+from somersault.view.style import BLACK, BLUE, GREY, SKY, darkening, label
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
