@@ -152,27 +152,6 @@ def test_principal_axes_circle_and_the_arms_answer():
 # -------------------------------------------------------------------------- posed pictures
 
 
-@pytest.mark.parametrize("model", ["furrer", "doll", "book", "simplest"])
-def test_places_are_those_of_mujoco(model):
-    ours = so.load(model)
-    compiled = mujoco.MjModel.from_xml_path(str(_SHIPPED / f"{model}.xml"))
-    data = mujoco.MjData(compiled)
-    q = ours.home + np.random.default_rng(3).uniform(-0.4, 0.4, len(ours.home))
-    for joint in ours.joints:
-        data.qpos[compiled.joint(joint.name).qposadr[0]] = q[ours.coordinate_slice(joint.name)][0]
-    mujoco.mj_kinematics(compiled, data)
-    mujoco.mj_comPos(compiled, data)
-    rotations, origins = parts.places(ours, q)
-    base = data.body(ours.bodies[0].name)
-    turn = base.xmat.reshape(3, 3)
-    for k, body in enumerate(ours.bodies):
-        seen = data.body(body.name)
-        np.testing.assert_allclose(turn @ origins[k] + base.xpos, seen.xpos, atol=1e-12)
-        np.testing.assert_allclose(turn @ rotations[k], seen.xmat.reshape(3, 3), atol=1e-12)
-    centre = turn @ parts.centre_of_mass(ours, q) + base.xpos
-    np.testing.assert_allclose(centre, data.subtree_com[compiled.body(ours.bodies[0].name).id])
-
-
 def test_solids_are_the_files_own_and_sticks_otherwise():
     furrer = so.load("furrer")
     assert len(parts.solids(furrer)) == 6

@@ -21,12 +21,9 @@ from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number, numbers
 from somersault.attitude import quaternion_from_matrix
 from somersault.dynamics import Equations
-from somersault.dynamics._composite import composites
-from somersault.dynamics._motion import place
-from somersault.dynamics._vector import add, mul, vadd
 from somersault.engine._integrator import STATUS, Integrator
 from somersault.flight._takeoff import JointTakeoff, Takeoff
-from somersault.model import Body, Joint, Model
+from somersault.model import Joint, Model, body_frames, body_velocities, centre_of_mass
 from somersault.model._mounted import Mount
 from somersault.model._pose import pose, spread
 
@@ -214,16 +211,12 @@ def released(
     if found.model != mount.held:
         raise SomersaultError(f"this is a swing of {found.model.name}, not of the mount given")
     q, u = found.q[-1], found.u[-1]
-    moving = _base_motion(mount)(q, u)
-    turn, origin, omega, velocity = (np.array(x) for x in moving)
-    omega, velocity = omega[:, 0], turn.T @ velocity[:, 0]
+    turn, origin, omega, velocity = _base_motion(mount, q, u)
     ahead = len(mount.carrier.joints)
     rider = mount.rider
     own, own_rates = q[ahead:], u[ahead:]
-    free = Equations(rider)
     still = np.concatenate([omega, velocity, own_rates])
-    linear = free.momentum(own, still)[3:] / rider.mass
-    centre = np.array(_moments(free)(own))[:, 0] / rider.mass + np.array(rider.bodies[0].com)
+    linear = Equations(rider).momentum(own, still)[3:] / rider.mass
     setups = by_name("joints", joints)
     for name, setup in setups.items():
         instance(f"takeoff of joint {name}", setup, JointTakeoff)
@@ -238,8 +231,17 @@ def released(
         velocity=(turn @ linear).tolist(),
         joints=takeoffs,
     )
-    place = origin[:, 0] + turn @ centre
-    return Release(takeoff, place, float(found.times[-1]))
+    centre = origin + turn @ centre_of_mass(rider, own)
+    return Release(takeoff, centre, float(found.times[-1]))
+
+
+def _base_motion(mount: Mount, q: Array, u: Array) -> tuple[Array, Array, Array, Array]:
+    """The rider's base turned in the ground's axes, its origin there, and its angular velocity and
+    its origin's velocity in its own axes."""
+    (carrier, *_), (foot, *_) = body_frames(mount.held, q)
+    (spin, *_), (rate, *_) = body_velocities(mount.held, q, u)
+    turn, arm = carrier @ np.array(mount.rotation), carrier @ np.array(mount.position)
+    return turn, foot + arm, turn.T @ spin, turn.T @ (rate + np.cross(spin, arm))
 
 
 def _let_go(joint: Joint, given: JointTakeoff | None, angle: float, rate: float) -> JointTakeoff:
@@ -258,9 +260,8 @@ def height_energy(equations: Equations, q: ArrayLike, gravity: ArrayLike = GRAVI
 
     Zero with its centre of mass at the height of the ground's origin.
     """
-    q = np.asarray(q, float)
-    moments = np.array(_moments(equations)(q.reshape(-1, q.shape[-1]).T)).T
-    return (-moments @ np.asarray(gravity, float)).reshape(q.shape[:-1])
+    model = equations.model
+    return -model.mass * centre_of_mass(model, q) @ np.asarray(gravity, float)
 
 
 def _check(model: Model, stops: Mapping[str, Stop]) -> None:
@@ -306,50 +307,3 @@ def _stop_torques(
         stops[joint.name].torque(q[k], u[k]) if joint.name in stops else 0.0
         for k, joint in enumerate(model.joints)
     ]
-
-
-def _moments(equations: Equations) -> ca.Function:
-    """Mass times centre of mass, of joint coordinates: from the ground's origin, or from a free
-    base's own centre of mass; in its axes."""
-    tree = equations.tree
-    q = ca.SX.sym("q", len(equations.model.coordinates))
-    placed = place(tree, [q[k] for k in range(q.numel())])
-    wholes = composites(tree, placed)
-    if tree.free:
-        return ca.Function("moments", [q], [ca.vertcat(*wholes[0].first)])
-    total: list[Any] = [0.0] * 3
-    for at, body in zip(placed, wholes, strict=True):
-        if at.link.parent < 0:
-            turned = at.turn.out(body.first)
-            total = vadd(total, [add(turned[k], mul(body.mass, at.position[k])) for k in range(3)])
-    return ca.Function("moments", [q], [ca.densify(ca.vertcat(*total))])
-
-
-def _base_motion(mount: Mount) -> ca.Function:
-    """Of (q, u): the rider's base turned in the ground's axes, its origin, its angular velocity in
-    its own axes, and its origin's velocity in the ground's."""
-    n = len(mount.held.joints)
-    q, u = ca.SX.sym("q", n), ca.SX.sym("u", n)
-    turn, origin = _frame(mount.carrier, q)
-    position, rotation = ca.DM(np.array(mount.position)), ca.DM(np.array(mount.rotation))
-    origin, turn = origin + turn @ position, turn @ rotation
-    change = ca.reshape(ca.jtimes(ca.vec(turn), q, u), 3, 3)
-    spin = turn.T @ change
-    omega = ca.vertcat(spin[2, 1], spin[0, 2], spin[1, 0])
-    return ca.Function("base", [q, u], [turn, origin, omega, ca.jtimes(origin, q, u)])
-
-
-def _frame(body: Body, q: Any) -> tuple[Any, Any]:
-    """Axes (columns) and origin of a body that stands on the ground; its joints come first in q."""
-    turn, origin = ca.SX(ca.DM(np.array(body.rotation))), ca.SX(ca.DM(np.array(body.position)))
-    for k, joint in enumerate(body.joints):
-        move, axis = q[k] - joint.reference, ca.DM(np.array(joint.axis))
-        if joint.kind == "slide":
-            origin += turn @ (axis * move)
-            continue
-        skew = ca.skew(axis)
-        own = ca.DM.eye(3) + ca.sin(move) * skew + (1 - ca.cos(move)) * (skew @ skew)
-        anchor = ca.DM(np.array(joint.anchor))
-        origin += turn @ (anchor - own @ anchor)
-        turn = turn @ own
-    return turn, origin

@@ -1,5 +1,11 @@
 """Bodies in the air: what they are made of, and where they are read from."""
 
+from somersault.model._kinematics import (
+    body_frames,
+    body_velocities,
+    centre_of_mass,
+    segment_momenta,
+)
 from somersault.model._load import load, shipped
 from somersault.model._mounted import Mount, mounted
 from somersault.model._types import GROUND, LIMIT_SLACK, Body, Follow, Joint, Model
@@ -17,8 +23,12 @@ __all__ = [
     "Mount",
     "athlete",
     "athlete_from_measurements",
+    "body_frames",
+    "body_velocities",
+    "centre_of_mass",
     "load",
     "mounted",
     "named_pose",
+    "segment_momenta",
     "shipped",
 ]

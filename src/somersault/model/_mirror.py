@@ -15,6 +15,7 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault.attitude import from_sequence
+from somersault.model._kinematics import body_frames
 from somersault.model._types import GROUND, Joint, Model
 
 _CLOSE = 1e-6  # of the body's own size
@@ -85,22 +86,16 @@ class _Drawn:
 
 
 def _drawn(model: Model) -> list[_Drawn]:
-    result: list[_Drawn] = []
-    for body in model.bodies:
-        rotation, position = np.array(body.rotation), np.array(body.position)
-        if body.parent != GROUND:
-            parent = result[body.parent]
-            position = parent.position + parent.rotation @ position
-            rotation = parent.rotation @ rotation
-        result.append(
-            _Drawn(
-                rotation,
-                position,
-                position + rotation @ np.array(body.com),
-                rotation @ np.array(body.inertia) @ rotation.T,
-            )
+    rotations, origins = body_frames(model, model.home)
+    return [
+        _Drawn(
+            rotation,
+            origin,
+            origin + rotation @ np.array(body.com),
+            rotation @ np.array(body.inertia) @ rotation.T,
         )
-    return result
+        for body, rotation, origin in zip(model.bodies, rotations, origins, strict=True)
+    ]
 
 
 def _pairs(model: Model, drawn: list[_Drawn], normal: int) -> tuple[Pair, ...]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault.attitude import matrix_from_quaternion
+from somersault.model import body_frames, centre_of_mass
 from somersault.view import _figure as parts
 from somersault.view import style as look
 
@@ -96,8 +97,8 @@ def _size(flight: Flight, times: Sequence[float] | Array) -> float:
 
 
 def _reach(model: Model, q: Array) -> float:
-    rotations, origins = parts.places(model, q)
-    centre = parts.centre_of_mass(model, q)
+    rotations, origins = body_frames(model, q)
+    centre = centre_of_mass(model, q)
     return max(
         float(
             np.linalg.norm(origins[s.body] + s.points @ rotations[s.body].T - centre, axis=1).max()

@@ -1,4 +1,4 @@
-"""Where the parts of a posed model are, and pictures of them as solids seen from afar."""
+"""Posed models as solids seen from afar."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.attitude import AXES, in_sequence, matrix_from_quaternion
+from somersault.attitude import AXES, in_sequence
 from somersault.attitude import Axes as BodyAxes
-from somersault.model import GROUND, Body, Joint, Model, load, shipped
+from somersault.model import Body, Model, body_frames, centre_of_mass, load, shipped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,48 +27,6 @@ class Solid:
     body: int
     points: Array
     radius: float
-
-
-# ------------------------------------------------------------------------ where parts are
-
-
-def places(model: Model, q: Array) -> tuple[Array, Array]:
-    """Rotations (bodies, 3, 3) and origins (bodies, 3) of body frames, in the base's axes.
-
-    q (coordinates,) are joint coordinates; columns of a rotation are the body's axes.
-    """
-    rotations, origins = np.empty((len(model.bodies), 3, 3)), np.empty((len(model.bodies), 3))
-    for index, body in enumerate(model.bodies):
-        turn, at = np.array(body.rotation), np.array(body.position)
-        if body.parent != GROUND:
-            base = rotations[body.parent]
-            turn, at = base @ turn, origins[body.parent] + base @ at
-        for joint in body.joints:
-            own, shift = _moved(joint, q[model.coordinate_slice(joint.name)])
-            anchor = np.array(joint.anchor)
-            at = at + turn @ (anchor - own @ anchor + shift)
-            turn = turn @ own
-        rotations[index], origins[index] = turn, at
-    return rotations, origins
-
-
-def _moved(joint: Joint, q: Array) -> tuple[Array, Array]:
-    axis = np.array(joint.axis)
-    if joint.kind == "ball":
-        return matrix_from_quaternion(q), np.zeros(3)
-    way = float(q[0] - joint.reference)
-    if joint.kind == "slide":
-        return np.eye(3), way * axis
-    half = np.concatenate([[np.cos(way / 2)], np.sin(way / 2) * axis])
-    return matrix_from_quaternion(half), np.zeros(3)
-
-
-def centre_of_mass(model: Model, q: Array) -> Array:
-    """Of the whole body, in the base's axes (3,)."""
-    rotations, origins = places(model, q)
-    masses = np.array([body.mass for body in model.bodies])
-    coms = np.array([body.com for body in model.bodies])
-    return masses @ (origins + np.einsum("bij,bj->bi", rotations, coms)) / masses.sum()
 
 
 # --------------------------------------------------------------------- what they look like
@@ -182,7 +140,7 @@ def draw(
     """
     from matplotlib.patches import Polygon
 
-    rotations, origins = places(model, q)
+    rotations, origins = body_frames(model, q)
     centre = centre_of_mass(model, q)
     drawn = []
     for solid in solids(model):
