@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 
-import mujoco
 import numpy as np
 import pytest
 
@@ -12,7 +11,6 @@ import somersault as so
 from somersault import rigid
 from somersault import stability as st
 from somersault.flight import fly
-from somersault.model._load import _SHIPPED
 from somersault.thesis import ENTRIES, reproduce
 from somersault.thesis.ch2 import _gyric as gyric
 from somersault.thesis.ch2 import _humans as humans
