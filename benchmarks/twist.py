@@ -113,7 +113,7 @@ def turns(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 def cases() -> tuple[Case, Case]:
     """The shipped motion of one and a half twists, compliant and prescribed."""
-    motion = json.loads((SOURCE / "thesis/rudi.json").read_text())
+    motion = json.loads((SOURCE / "thesis/ch6/rudi.json").read_text())
     joints = {
         name: so.JointTakeoff("prescribed", times=path["times"], angles=path["angles"])
         for name, path in motion["joints"].items()

@@ -28,6 +28,7 @@ from somersault.flight._maneuvers import (
 from somersault.rigid import RigidMotion
 from somersault.thesis.ch1 import _techniques as techniques
 from somersault.thesis.ch6 import _hula as of_hula
+from somersault.thesis.ch6 import _torque_twist as of_torque_twist
 
 SHARP = 1e-12
 
@@ -235,7 +236,7 @@ def test_torque_twist_turns_as_asked_and_does_not_stop():
 
 
 def test_only_a_tilt_ends_a_torque_twist():
-    made, moment, lean = of_hula.stopped_torque_twist()
+    made, moment, lean = of_torque_twist.stopped_torque_twist()
     flown = replace(made, duration=3.5).fly(accuracy=SHARP)
     over = flown.times > moment + 0.2
     assert np.ptp(flown.dataset["twist"].values[over]) < 0.01

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import math
+import subprocess
+import sys
 from html.parser import HTMLParser
+from importlib import import_module
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -14,9 +18,9 @@ import pytest
 from somersault import SomersaultError
 from somersault.thesis import ENTRIES, ERRATA, Entry, Result, reproduce
 from somersault.thesis._claims import number, statement
-from somersault.thesis._entries import select
+from somersault.thesis._entries import Deferred, select
 from somersault.thesis.ch4 import _furrer as furrer
-from somersault.thesis.ch4 import _rigid as rigid
+from somersault.thesis.ch4 import _rigid_layout as rigid
 
 FIELDS = ["id", "where", "claim", "thesis", "computed", "unit", "tolerance", "holds", "note"]
 
@@ -44,7 +48,7 @@ def test_a_changed_number_of_the_thesis_flips_its_claim(monkeypatch):
 
 def test_a_changed_model_flips_claims(monkeypatch):
     """A wrong edge is noticed by the search that does not use the closed form."""
-    from somersault.thesis.ch4 import _edges as edges
+    from somersault.thesis.ch4 import _stiffness_ranges as edges
 
     true = furrer.edges(edges.ANGLES)
     found = furrer.searched(furrer.TWO, edges.ANGLES)
@@ -94,6 +98,22 @@ def test_unknown_id_is_refused_in_one_sentence_that_lists_what_there_is(tmp_path
     assert "fig4-9" in said
     assert "\n" not in said
     assert not (tmp_path / "out").exists()
+
+
+def test_every_entry_names_a_function_of_its_own_chapters_folder():
+    for entry in ENTRIES:
+        assert isinstance(entry.make, Deferred)
+        module = import_module(entry.make.module)
+        assert module.__package__ == f"somersault.thesis.{entry.chapter}"
+        assert inspect.get_annotations(getattr(module, entry.make.function)) == {"return": "Result"}
+
+
+def test_the_list_of_entries_costs_no_numerics():
+    script = (
+        "import sys, somersault.thesis as t; assert len(t.ENTRIES) > 50\n"
+        "sys.exit(bool({'numpy', 'scipy', 'matplotlib', 'casadi', 'rich'} & set(sys.modules)))"
+    )
+    assert subprocess.run([sys.executable, "-c", script]).returncode == 0
 
 
 def test_entries_have_ids_of_their_own():

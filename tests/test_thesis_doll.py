@@ -8,7 +8,9 @@ from reference_a3 import DOLL, DOLL_WEIGHTED, FURRER, Athlete, matrices, springs
 
 from somersault.thesis import Result
 from somersault.thesis.ch5 import _doll as doll
-from somersault.thesis.ch5 import _doll_compared as compared
+from somersault.thesis.ch5 import _doll_and_human as compared
+from somersault.thesis.ch5 import _doll_parameters as table
+from somersault.thesis.ch5 import _doll_springs as springs_of_doll
 
 FAIL = {
     "table5-1.rl3-weighted",
@@ -21,7 +23,7 @@ FAIL = {
 
 @pytest.fixture(scope="module")
 def results() -> dict[str, Result]:
-    made = (doll.table_5_1, compared.fig_5_2, compared.fig_5_3, compared.fig_5_5)
+    made = (table.table_5_1, compared.fig_5_2, compared.fig_5_3, springs_of_doll.fig_5_5)
     return {make.__name__: make() for make in made}
 
 
@@ -139,7 +141,7 @@ def test_pictures_and_tables_are_there(results: dict[str, Result]) -> None:
 def test_a_moved_measurement_flips_its_claims(monkeypatch: pytest.MonkeyPatch) -> None:
     (low, high), *_ = doll.springs("doll_weighted")
     human = doll.springs("furrer")
-    monkeypatch.setattr(compared, "BEST", 1.3)  # in the doll's range, not in the human's
-    holds = {claim.id: claim.holds for claim in compared._range_claims(low, high, human)}
+    monkeypatch.setattr(springs_of_doll, "BEST", 1.3)  # in the doll's range, not in the human's
+    holds = {claim.id: claim.holds for claim in springs_of_doll._range_claims(low, high, human)}
     assert holds["fig5-5.best"]
     assert not holds["fig5-5.best-human"]

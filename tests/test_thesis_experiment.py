@@ -8,17 +8,18 @@ import numpy as np
 import pytest
 
 from somersault.flight import JointTakeoff, fly
-from somersault.thesis.ch5 import _experiment as experiment
-from somersault.thesis.ch5 import _friction as friction
-from somersault.thesis.ch5 import _launch as launches_of_one
+from somersault.thesis.ch5 import _five_springs as springs_tried
+from somersault.thesis.ch5 import _launch_results as launches
+from somersault.thesis.ch5 import _launch_scatter as likelihood
 from somersault.thesis.ch5 import _launcher as launcher
-from somersault.thesis.ch5 import _launches as launches
 from somersault.thesis.ch5 import _no_ceiling as no_ceiling
-from somersault.thesis.ch5 import _scatter, _springs_tried
+from somersault.thesis.ch5 import _release_and_flight as launches_of_one
+from somersault.thesis.ch5 import _shoulder_friction as friction
+from somersault.thesis.ch5 import _simulated_launches as experiment
 from somersault.thesis.ch5._doll import BEST, WEIGHTED, shoulder_inertia
-from somersault.thesis.ch5._experiment import SCATTER, Outcome, Scatter
 from somersault.thesis.ch5._launcher import ARMS, BAR_HEIGHT, RELEASE, SPIN, launch
 from somersault.thesis.ch5._pulleys import BEST_AT, OMITTED, RADII, SPRINGS, on_pulleys
+from somersault.thesis.ch5._simulated_launches import SCATTER, Outcome, Scatter
 
 # ---------------------------------------------------------------------------- launcher
 
@@ -152,9 +153,9 @@ def test_twenty_launches_have_draws_of_their_own() -> None:
 
 def test_chances_are_those_of_a_hand_count() -> None:
     """Against ten thousand experiments drawn from the launches themselves."""
-    ours = _scatter.chances(experiment.many()).each
+    ours = likelihood.chances(experiment.many()).each
     seen = launches.repeated()
-    low, high = _scatter.OCCASIONALLY
+    low, high = likelihood.OCCASIONALLY
     soft = (seen["mean"] >= 2) & (seen["stable"] >= low) & (seen["stable"] <= high)
     counted = soft.mean(0)
     counted[BEST_AT] = (seen["stable"][:, BEST_AT] == 18).mean()
@@ -167,7 +168,7 @@ def test_chances_are_those_of_a_hand_count() -> None:
 def test_a_scatter_too_large_or_too_small_is_refused() -> None:
     def together(scatter: Scatter) -> float:
         found = experiment.sprung(SPRINGS, scatter, 256)
-        return _scatter.chances(found.with_(experiment.clamped(scatter, 256))).together
+        return likelihood.chances(found.with_(experiment.clamped(scatter, 256))).together
 
     right = together(SCATTER)
     assert right > 0.02
@@ -211,8 +212,8 @@ def test_the_two_to_one_resonance_is_between_the_modes() -> None:
 @pytest.mark.slow
 def test_entries_say_why_claims_fail() -> None:
     made = (
-        launches_of_one.sec_5_4, launches.fig_5_7, launches.fig_5_8, _scatter.estimate,
-        _springs_tried.springs_tried, no_ceiling.ceiling, friction.friction,
+        launches_of_one.sec_5_4, launches.fig_5_7, launches.fig_5_8, likelihood.estimate,
+        springs_tried.springs_tried, no_ceiling.ceiling, friction.friction,
     )  # fmt: skip
     results = [make() for make in made]
     claims = [claim for result in results for claim in result.claims]

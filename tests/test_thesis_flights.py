@@ -12,13 +12,13 @@ from somersault import rigid
 from somersault import stability as st
 from somersault.flight import fly
 from somersault.thesis import ENTRIES, reproduce
-from somersault.thesis.ch2 import _gyric as gyric
-from somersault.thesis.ch2 import _humans as humans
-from somersault.thesis.ch2 import _spheres as spheres
-from somersault.thesis.ch4 import _asymmetry as asymmetry
-from somersault.thesis.ch4 import _layout as layout
-from somersault.thesis.ch4 import _reorientation as reorientation
-from somersault.thesis.ch4 import _ridge as ridge
+from somersault.thesis.ch2 import _inertia_ratios as gyric
+from somersault.thesis.ch2 import _momentum_sphere as spheres
+from somersault.thesis.ch2 import _postures as humans
+from somersault.thesis.ch4 import _arm_raised as asymmetry
+from somersault.thesis.ch4 import _layout_takeoff as layout
+from somersault.thesis.ch4 import _lifetimes as ridge
+from somersault.thesis.ch4 import _tilt_and_twist_paths as reorientation
 from somersault.view import _figure as parts
 from somersault.view._contact_sheet import contact_sheet
 

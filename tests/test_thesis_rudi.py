@@ -9,11 +9,11 @@ from scipy.linalg import eig
 
 import somersault as so
 from somersault.dynamics import Equations
+from somersault.thesis.ch6 import _bounded_torques as gentle
 from somersault.thesis.ch6 import _eigenfrequencies as table
+from somersault.thesis.ch6 import _landing_sensitivity as why
 from somersault.thesis.ch6 import _rudi as rudi
 from somersault.thesis.ch6 import _rudi_flights as flights
-from somersault.thesis.ch6 import _rudi_gentle as gentle
-from somersault.thesis.ch6 import _why_compliance as why
 
 KEPT: tuple[rudi.Kept, ...] = ("rudi", "rudi_gentle")
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
+if TYPE_CHECKING:
+    import numpy as np
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +61,8 @@ def statement(
     note: str = "",
 ) -> Claim:
     """A statement of the thesis: `holds` is a truth value computed from data."""
+    import numpy as np
+
     if not isinstance(holds, bool | np.bool_):
         raise TypeError(f"claim {id}: whether it holds must be computed, as a truth value")
     return Claim(id, where, claim, thesis, computed, "", None, bool(holds), note)

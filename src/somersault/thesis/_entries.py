@@ -1,16 +1,18 @@
-"""What an entry of the reproduction is, and which entries an ID means."""
+"""What an entry of the reproduction is, which chapter it stands in, and which ones an ID means."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from somersault._core.errors import SomersaultError
-from somersault.thesis._claims import Claim
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from somersault.thesis._claims import Claim
 
 
 @dataclass(frozen=True)
@@ -23,13 +25,25 @@ class Table:
 
 @dataclass(frozen=True)
 class Result:
-    """What one entry gives: the thesis's statement, what was found, picture, table, claims."""
+    """What one entry gives: the thesis's statement, our result, picture, table, claims."""
 
     says: str
-    found: str
+    ours: str
     claims: tuple[Claim, ...] = ()
     figure: Figure | None = None
     table: Table | None = None
+
+
+@dataclass(frozen=True)
+class Deferred:
+    """A function that is imported when it is called, so that a list of entries costs nothing."""
+
+    module: str
+    function: str
+
+    def __call__(self) -> Result:
+        result: Result = getattr(import_module(self.module), self.function)()
+        return result
 
 
 @dataclass(frozen=True)
@@ -41,6 +55,25 @@ class Entry:
     chapter: str
     make: Callable[[], Result]
     beyond: bool = False
+
+    @classmethod
+    def of(cls, package: str, id: str, title: str, source: str, beyond: bool = False) -> Entry:
+        """An entry whose `source`, "module.function", stands in a chapter's folder.
+
+        `package` is the folder's `__name__`. The function takes nothing and returns a `Result`.
+        """
+        module, _, function = source.rpartition(".")
+        chapter = package.rpartition(".")[2]
+        return cls(id, title, chapter, Deferred(f"{package}.{module}", function), beyond)
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """A chapter's entries, in the order of the thesis."""
+
+    id: str
+    title: str
+    entries: tuple[Entry, ...]
 
 
 def select(ids: Iterable[str] | None, entries: Sequence[Entry]) -> list[Entry]:

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from somersault._core.errors import SomersaultError
 from somersault._core.files import write
@@ -14,8 +14,9 @@ from somersault.thesis._claims import Claim
 from somersault.thesis._entries import Entry, Result, select
 from somersault.thesis._errata import ERRATA
 from somersault.thesis._registry import ENTRIES
-from somersault.view import style as look
-from somersault.view._report import Section, page
+
+if TYPE_CHECKING:
+    from somersault.view._report import Section
 
 
 def reproduce(
@@ -47,6 +48,9 @@ def reproduce(
 
 def _made(chosen: Sequence[Entry], folder: Path, progress: bool) -> list[Claim]:
     """Everything, in a folder that nobody sees before it is whole."""
+    from somersault.view import style as look
+    from somersault.view._report import page
+
     sections: list[Section] = []
     claims: list[Claim] = []
     for entry in _watched(chosen, progress):
@@ -90,6 +94,8 @@ def _watched(entries: Sequence[Entry], progress: bool) -> Iterable[Entry]:
 
 def _save(figure: Any, stem: Path) -> None:
     """SVG and PNG that are the same, byte for byte, whenever they are made."""
+    from somersault.view import style as look
+
     figure.draw_without_rendering()
     figure.set_layout_engine("none")  # laid out once, and the same in both files
     for ending in ("svg", "png"):
@@ -97,12 +103,14 @@ def _save(figure: Any, stem: Path) -> None:
 
 
 def _section(entry: Entry, result: Result) -> Section:
+    from somersault.view._report import Section
+
     table = (result.table.header, result.table.rows) if result.table is not None else None
     return Section(
         entry.id,
         entry.title,
         result.says,
-        result.found,
+        result.ours,
         f"figures/{entry.id}" if result.figure is not None else None,
         [claim.record() for claim in result.claims],
         table,

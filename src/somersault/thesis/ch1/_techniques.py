@@ -21,7 +21,7 @@ from somersault.flight._maneuvers import (
 from somersault.stability._spin import principal
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result
-from somersault.thesis.ch4._reorientation import principal_attitude
+from somersault.thesis.ch4._tilt_and_twist_paths import principal_attitude
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -25,7 +25,7 @@ from somersault.thesis.ch4._furrer import (
     edges,
     literal_damping,
 )
-from somersault.thesis.ch4._locus import SWEEP, asymmetry, roots_along
+from somersault.thesis.ch4._root_loci import SWEEP, asymmetry, roots_along
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -13,11 +13,11 @@ from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result, Table
 from somersault.thesis.ch4._furrer import ANGLE, STIFFNESS
 from somersault.thesis.ch5 import _doll as doll
-from somersault.thesis.ch5 import _experiment as experiment
+from somersault.thesis.ch5 import _simulated_launches as experiment
 from somersault.thesis.ch5._doll import BEST, WEIGHTED
-from somersault.thesis.ch5._experiment import SCATTER, Outcome, Scatter
 from somersault.thesis.ch5._launcher import ARMS, SPIN
 from somersault.thesis.ch5._pulleys import BEST_AT, OMITTED
+from somersault.thesis.ch5._simulated_launches import SCATTER, Outcome, Scatter
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

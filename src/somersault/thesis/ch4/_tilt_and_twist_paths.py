@@ -13,10 +13,10 @@ from somersault.attitude import matrix_from_quaternion
 from somersault.flight import Flight
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result
-from somersault.thesis.ch4._asymmetry import principal_axes
+from somersault.thesis.ch4._arm_raised import principal_axes
 from somersault.thesis.ch4._furrer import MODEL, NOMINAL
-from somersault.thesis.ch4._layout import SPIN, passive
-from somersault.thesis.ch4._layout_flights import STIFFNESS
+from somersault.thesis.ch4._layout_takeoff import SPIN, passive
+from somersault.thesis.ch4._rigid_and_passive import STIFFNESS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

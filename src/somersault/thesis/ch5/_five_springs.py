@@ -13,12 +13,12 @@ from somersault._core.array import Array
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result, Table
 from somersault.thesis.ch5 import _doll as doll
-from somersault.thesis.ch5 import _experiment as experiment
-from somersault.thesis.ch5 import _scatter
+from somersault.thesis.ch5 import _launch_scatter as likelihood
+from somersault.thesis.ch5 import _simulated_launches as experiment
 from somersault.thesis.ch5._doll import BEST, WEIGHTED
-from somersault.thesis.ch5._experiment import LAUNCHES, SCATTER, Outcome, Scatter
 from somersault.thesis.ch5._launcher import ARMS
 from somersault.thesis.ch5._pulleys import OMITTED, SHARES, SPRINGS, on_pulleys
+from somersault.thesis.ch5._simulated_launches import LAUNCHES, SCATTER, Outcome, Scatter
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -62,8 +62,8 @@ class FiveSprings:
 def _chances() -> dict[str, Array]:
     """The probability of what was seen with each of STIFFNESSES, were that its role."""
     found = swept(SCATTER)
-    columns = (_scatter.smoothed(found), found.mean, found.deviation)
-    return {role: _scatter.of_spring(*columns, role) for role in ("best", "stiffest", "softer")}
+    columns = (likelihood.smoothed(found), found.mean, found.deviation)
+    return {role: likelihood.of_spring(*columns, role) for role in ("best", "stiffest", "softer")}
 
 
 def probability(springs: tuple[float, ...]) -> float:

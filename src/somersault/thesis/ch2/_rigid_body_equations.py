@@ -9,7 +9,7 @@ from somersault import stability as st
 from somersault.flight import JointTakeoff, Takeoff, fly
 from somersault.thesis._claims import Claim, number, statement
 from somersault.thesis._entries import Result
-from somersault.thesis.ch2._gyric import STABLE, random_bodies, roots
+from somersault.thesis.ch2._inertia_ratios import STABLE, random_bodies, roots
 from somersault.thesis.ch4._furrer import MODEL, NOMINAL
 
 

@@ -15,7 +15,7 @@ from somersault.flight import JointTakeoff, Takeoff
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result, Table
 from somersault.thesis.ch4._furrer import ANGLE, GROWS, MODEL, STIFFNESS, both, shoulder_inertia
-from somersault.thesis.ch4._layout import SPIN, TURN
+from somersault.thesis.ch4._layout_takeoff import SPIN, TURN
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

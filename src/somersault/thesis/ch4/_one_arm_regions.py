@@ -10,7 +10,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault.thesis._claims import statement
 from somersault.thesis._entries import Result, Table
-from somersault.thesis.ch4._simplest import bodies, stable
+from somersault.thesis.ch4._one_arm_model import bodies, stable
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -12,12 +12,12 @@ from somersault._core.array import Array
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result, Table
 from somersault.thesis.ch4._furrer import ANGLE, DAMPING, STIFFNESS
-from somersault.thesis.ch5 import _experiment as experiment
+from somersault.thesis.ch5 import _simulated_launches as experiment
 from somersault.thesis.ch5._doll import BEST, WEIGHTED, shoulder_inertia
-from somersault.thesis.ch5._experiment import SCATTER, Outcome
 from somersault.thesis.ch5._launcher import ARMS, SOMERSAULTS, SPIN
 from somersault.thesis.ch5._no_ceiling import MOST, scaled
 from somersault.thesis.ch5._pulleys import OMITTED
+from somersault.thesis.ch5._simulated_launches import SCATTER, Outcome
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -18,7 +18,7 @@ from somersault.thesis.ch4._furrer import (
     shown,
     undivided_growth,
 )
-from somersault.thesis.ch4._regions import REFERENCE
+from somersault.thesis.ch4._stability_regions import REFERENCE
 
 ANGLES = np.round(np.arange(0.4, 2.61, 0.2), 1)
 Ranges = list[list[tuple[float, float]]]

@@ -1,4 +1,4 @@
-"""The map of rigid rotation: figures 2-7, 2-8, 3-3 and 4-3 (section 2.5)."""
+"""The map of rigid rotation: figures 2-7 and 2-8 (section 2.5)."""
 
 from __future__ import annotations
 
@@ -11,15 +11,14 @@ from somersault import stability as st
 from somersault._core.array import Array
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result
-from somersault.thesis.ch2._gyric import random_bodies
-from somersault.thesis.ch4._furrer import MODEL, NOMINAL
+from somersault.thesis.ch2._inertia_ratios import random_bodies
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _LAYOUT = "human_layout"
 _EXAMPLE = (np.radians(3.0), 0.0)  # tilt and twist of the body in figure 2-7
-_AXES = ("front-to-back", "side-to-side", "head-to-toe")
+AXES = ("front-to-back", "side-to-side", "head-to-toe")
 
 
 def minor_share(inertias: Array) -> float:
@@ -41,11 +40,11 @@ def fig_2_7() -> Result:
         f"{100 * minor_share(inertias):.0f} % of the sphere, those round the front-to-back axis "
         f"the narrow lunes between. The black dot is the printed example, Θ = 3°, Ψ = 0.",
         (*_bound_claims(inertias), *_kind_claims(inertias), *_curve_claims(inertias)),
-        _map_with_dot(inertias, "human_layout held rigid"),
+        map_with_example(inertias, "human_layout held rigid"),
     )
 
 
-def _map_with_dot(inertias: Array, title: str) -> Figure:
+def map_with_example(inertias: Array, title: str) -> Figure:
     from somersault.view import _sphere
     from somersault.view import style as look
     from somersault.view._figure import camera
@@ -117,7 +116,7 @@ def _kind_claims(inertias: Array) -> list[Claim]:
             "fig2-7.axes", "§2.5, Figure 2-7", "in layout the minor axis is head-to-toe, and the "
             "middle one, where curves converge and diverge, the somersault axis",
             "head-to-toe, side-to-side",
-            f"{_AXES[int(np.argmin(inertias))]}, {_AXES[int(np.argsort(inertias)[1])]}",
+            f"{AXES[int(np.argmin(inertias))]}, {AXES[int(np.argsort(inertias)[1])]}",
             int(np.argmin(inertias)) == 2 and int(np.argsort(inertias)[1]) == 1,
         ),
     ]  # fmt: skip
@@ -225,85 +224,3 @@ def _draw_2_8() -> Figure:
     ax.set_aspect("equal")
     ax.axis("off")
     return made
-
-
-def fig_3_3() -> Result:
-    """A spin about the major axis: tuck."""
-    from somersault.view import _sphere
-
-    inertias = st.principal_inertias("human_tuck")
-    pike = 1 - minor_share(st.principal_inertias("human_pike"))
-    share = 1 - minor_share(inertias)
-    chance = np.random.default_rng(33)
-    worst, stays = 0.0, True
-    reach = []
-    for angle in (0.01, 0.02, 0.05):
-        for turn in chance.uniform(0, 2 * np.pi, 20):
-            c = np.array([angle * np.sin(turn), np.cos(angle), angle * np.cos(turn)])
-            motion = rigid.RigidMotion(inertias, c / inertias)
-            path = motion.omega(np.linspace(0, motion.period, 300)) * inertias
-            away = np.arccos(np.clip(path[:, 1] / np.linalg.norm(path, axis=1), -1, 1)).max()
-            reach.append(away / np.arccos(c[1] / np.linalg.norm(c)))
-            worst, stays = max(worst, float(away)), stays and motion.kind == "major"
-    claims = (
-        statement(
-            "fig3-3.major", "§3.1, §3.2", "in most humans the tuck somersault is about the major "
-            "principal axis", "major", f"I2 = {inertias[1]:.3f} of {inertias[0]:.3f}, "
-            f"{inertias[1]:.3f}, {inertias[2]:.3f} kg m²", int(np.argmax(inertias)) == 1,
-            "The tucked athlete stands in for the 3D Biped, whose I1 and I3 are not printed.",
-        ),
-        statement(
-            "fig3-3.stays", "§3.2", "begun with the momentum close to the major axis, it remains "
-            "close to it", "remains close", f"all {len(reach)} exact motions of human_tuck from "
-            f"0.01 to 0.05 rad off stay in its lune, and go at most {max(reach):.1f} times as far",
-            stays and worst < np.pi / 4,
-            f"Furthest {worst:.2f} rad. On a small ellipse of energy the ratio is "
-            f"√(I1 (I2 − I3)/(I3 (I2 − I1))) = {_ellipse(inertias):.1f}: I1 is nearly I2.",
-        ),
-    )  # fmt: skip
-    return Result(
-        "The 3D Biped's somersault axis is its major principal axis; the region of stable rotation "
-        "about it is large.",
-        f"Drawn for the tucked athlete, human_tuck: the robot's I1 and I3 are not in the thesis. "
-        f"Round its major axis lie {100 * share:.0f} % of the sphere (human_pike: "
-        f"{100 * pike:.0f} %), a narrow lune because I1 is nearly I2.",
-        claims,
-        _sphere.sphere_map(inertias, _sphere.energies(inertias, 6), "human_tuck held rigid"),
-    )
-
-
-def _ellipse(inertias: Array) -> float:
-    """Greatest over least deviation on small curves round the major axis 2."""
-    one, two, three = inertias
-    ratio = np.sqrt((1 / three - 1 / two) / (1 / one - 1 / two))
-    return float(max(ratio, 1 / ratio))
-
-
-def fig_4_3() -> Result:
-    """The map again, for Furrer's layout."""
-    inertias = st.principal_inertias(MODEL, {"shoulder": NOMINAL})
-    circles = rigid.separatrix(inertias, 721)
-    tilt, _ = rigid.tilt_and_twist(circles)
-    widest = float(np.degrees(np.abs(tilt).max()))
-    order = [int(k) for k in np.argsort(inertias)]
-    growth = float(rigid.growth_angle(*rigid.inertia_ratios(*inertias)))
-    claims = (
-        statement(
-            "fig4-3.middle", "§4.1, Figure 4-3", "the layout somersault is about the middle axis, "
-            "upon which trajectories converge and diverge", "middle axis, unstable",
-            f"axis 2 is the middle one, and the separatrix crosses on it: tenfold growth in "
-            f"{growth:.2f} rad", order[1] == 1 and bool(np.isfinite(growth)),
-        ),
-        statement(
-            "fig4-3.major", "§4.1", "the maximum principal axis is front-to-back", "front-to-back",
-            _AXES[order[2]], order[2] == 0,
-        ),
-    )  # fmt: skip
-    return Result(
-        "The map of figure 2-7 again: the rigid layout's instability is evident from trajectories "
-        "that converge and diverge upon the somersault axis.",
-        f"Here for Furrer with his arms at Γ = 1.3 rad. The lunes round the front-to-back axis "
-        f"reach {widest:.1f}° of tilt.",
-        claims,
-        _map_with_dot(inertias, "Furrer held rigid, arms at 1.3 rad"),
-    )

@@ -9,7 +9,7 @@ import numpy as np
 from somersault.thesis._claims import number, statement
 from somersault.thesis._entries import Result
 from somersault.thesis.ch4._furrer import THREE, edges
-from somersault.thesis.ch4._regions import FINE, draw_part
+from somersault.thesis.ch4._stability_regions import FINE, draw_part
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -21,9 +21,9 @@ from scipy import stats
 from somersault._core.array import Array
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result, Table
-from somersault.thesis.ch5 import _experiment as experiment
-from somersault.thesis.ch5._experiment import LAUNCHES, SCATTER, Outcome, Scatter
+from somersault.thesis.ch5 import _simulated_launches as experiment
 from somersault.thesis.ch5._pulleys import BEST_AT, SPRINGS
+from somersault.thesis.ch5._simulated_launches import LAUNCHES, SCATTER, Outcome, Scatter
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

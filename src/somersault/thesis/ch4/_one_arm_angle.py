@@ -11,7 +11,7 @@ from somersault.model import load
 from somersault.thesis._claims import statement
 from somersault.thesis._entries import Result
 from somersault.thesis.ch4._furrer import ANGLE, STIFFNESS, THREE, region, shoulder_inertia
-from somersault.thesis.ch4._simplest import SIMPLEST, stable
+from somersault.thesis.ch4._one_arm_model import SIMPLEST, stable
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

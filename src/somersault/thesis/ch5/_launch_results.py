@@ -13,12 +13,12 @@ from somersault._core.array import Array
 from somersault.ensembles import ENDINGS, fraction
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result, Table
-from somersault.thesis.ch5 import _experiment as experiment
-from somersault.thesis.ch5 import _scatter
+from somersault.thesis.ch5 import _launch_scatter as likelihood
+from somersault.thesis.ch5 import _simulated_launches as experiment
 from somersault.thesis.ch5._doll import WEIGHTED
-from somersault.thesis.ch5._experiment import LAUNCHES, MANY, SCATTER, SEED, Outcome
 from somersault.thesis.ch5._launcher import ARMS, SOMERSAULTS
 from somersault.thesis.ch5._pulleys import BEST_AT, SPRINGS
+from somersault.thesis.ch5._simulated_launches import LAUNCHES, MANY, SCATTER, SEED, Outcome
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -81,10 +81,10 @@ def _claims_5_7(many: Outcome) -> list[Claim]:
     seen = repeated()
     mean, deviation = many.mean, many.deviation
     soft = mean[_SOFT]
-    low, high = _scatter.ABOUT_ONE
+    low, high = likelihood.ABOUT_ONE
     others = np.delete(np.arange(len(_NAMES)), BEST_AT)
     best = float((seen["mean"][:, BEST_AT] > seen["mean"][:, others].max(1)).mean())
-    soft_seen = float((seen["mean"][:, _SOFT] >= _scatter.LEAST).all(1).mean())
+    soft_seen = float((seen["mean"][:, _SOFT] >= likelihood.LEAST).all(1).mean())
     alike = float((seen["mean"][:, _STIFFEST] < seen["mean"][:, _SOFT].min(1)).mean())
     rises = float((seen["deviation"][:, _SOFT].argmax(1) == 0).mean())
     grows = st.spin(WEIGHTED, 2, {"shoulder": ARMS}).linear(lock="all").growth_per_somersault
@@ -122,7 +122,7 @@ def _claims_5_7(many: Outcome) -> list[Claim]:
             "somersaults, on average at least two", "two or more",
             f"{', '.join(f'{x:.2f}' for x in soft)} for K_sh = "
             f"{', '.join(_NAMES[:BEST_AT])}; all of them in {100 * soft_seen:.0f} % of "
-            "experiments", bool(soft.min() >= _scatter.LEAST),
+            "experiments", bool(soft.min() >= likelihood.LEAST),
         ),
         statement(
             "fig5-7.order", where, "more somersaults with 0.82 than with softer springs, more "
@@ -168,7 +168,7 @@ def fig_5_8() -> Result:
     rows = [
         (name, f"{int(few.stable[k].sum())} of {LAUNCHES}", _span(wide, k),
          f"{100 * many.share[k]:.1f} %", _span(narrow, k),
-         f"{experiment.at_least(many.share[k], _scatter.STABLE):.3f}")
+         f"{experiment.at_least(many.share[k], likelihood.STABLE):.3f}")
         for k, name in enumerate(_NAMES)
     ]  # fmt: skip
     return Result(
@@ -189,7 +189,7 @@ def _span(share: xr.Dataset, k: int) -> str:
 
 def _of_eighteen() -> str:
     seen = np.zeros((1, LAUNCHES), bool)
-    seen[0, : _scatter.STABLE] = True
+    seen[0, : likelihood.STABLE] = True
     share = intervals(Outcome(np.zeros(seen.shape), seen))
     return f"a share between {100 * float(share['low'][0]):.0f} and " \
         f"{100 * float(share['high'][0]):.0f} %"  # fmt: skip
@@ -201,11 +201,11 @@ def _claims_5_8(many: Outcome) -> list[Claim]:
     low, high = (span[name].values for name in ("low", "high"))
     others = np.delete(np.arange(len(_NAMES)), BEST_AT)
     first = float((seen[:, BEST_AT] > seen[:, others].max(1)).mean())
-    eighteen = float(experiment.at_least(share[BEST_AT], _scatter.STABLE))
-    rest = float(experiment.at_least(share[others].max(), _scatter.STABLE))
+    eighteen = float(experiment.at_least(share[BEST_AT], likelihood.STABLE))
+    rest = float(experiment.at_least(share[others].max(), likelihood.STABLE))
     some = float((seen[:, _SOFT] >= 1).all(1).mean())
     none = float((1 - share[_STIFFEST]) ** LAUNCHES)
-    together = _scatter.chances(many).together
+    together = likelihood.chances(many).together
     where = "§5.5, Figure 5-8"
     return [
         statement(
@@ -246,9 +246,9 @@ def _claims_5_8(many: Outcome) -> list[Claim]:
             "fig5-8.together", "§5.5", "all six results in one experiment", "seen once",
             f"probability {together:.3f}, with exactly 18 of 20", together > 0.01,
             "With 18 or more of 20 it is "
-            f"{together * eighteen / _scatter.chances(many).each[BEST_AT]:.3f}. "
+            f"{together * eighteen / likelihood.chances(many).each[BEST_AT]:.3f}. "
             "Holds above 0.01; each of the six by itself has more than "
-            f"{_scatter.chances(many).each.min():.2f}.",
+            f"{likelihood.chances(many).each.min():.2f}.",
         ),
     ]  # fmt: skip
 
