@@ -17,7 +17,7 @@ from somersault.attitude import Axes, matrix_from_quaternion
 from somersault.model._mirror import mirror_pairs
 from somersault.model._weld import as_matrix, as_vector
 from somersault.view import _figure as parts
-from somersault.view._contact_sheet import contact_sheet
+from somersault.view import contact_sheet
 
 ORDERS = [axes for axes in permutations((1, 2, 3)) if axes != (2, 1, 3)]
 SAME = 1e-10

@@ -11,7 +11,7 @@ import pytest
 from somersault import rigid
 from somersault import stability as st
 from somersault.cli import main
-from somersault.view import _sphere
+from somersault.view import sphere
 from somersault.view import style as look
 
 LAYOUT = st.principal_inertias("human_layout")
@@ -31,7 +31,7 @@ def exit_code(words: list[str]) -> int | str | None:
 
 def test_energies_lie_between_their_bounds_on_both_sides() -> None:
     low, middle, high = rigid.energy_bounds(LAYOUT, 1.0)
-    found = _sphere.energies(LAYOUT, 5)
+    found = sphere.energies(LAYOUT, 5)
     assert len(found) == 10
     assert np.all(np.diff(found) > 0)
     assert np.sum(found > middle) == 5
@@ -40,16 +40,16 @@ def test_energies_lie_between_their_bounds_on_both_sides() -> None:
 
 @pytest.mark.parametrize(("inertias", "count"), [((3.0, 3.0, 1.0), 4), ((1.0, 3.0, 3.0), 4)])
 def test_a_symmetric_body_has_one_kind_of_curves(inertias: tuple, count: int) -> None:
-    assert len(_sphere.energies(inertias, count)) == count
+    assert len(sphere.energies(inertias, count)) == count
     with look.style():
-        _sphere.sphere_map(inertias, _sphere.energies(inertias, count)).draw_without_rendering()
+        sphere.sphere_map(inertias, sphere.energies(inertias, count)).draw_without_rendering()
 
 
 def test_unrolled_curves_are_points_of_their_energy() -> None:
     """Every point drawn in the chart, read as tilt and twist, has one of the energies asked for."""
-    levels = _sphere.energies(LAYOUT, 3)
+    levels = sphere.energies(LAYOUT, 3)
     with look.style():
-        chart = _sphere.sphere_map(LAYOUT, levels).axes[1]
+        chart = sphere.sphere_map(LAYOUT, levels).axes[1]
     allowed = np.append(levels, rigid.energy_bounds(LAYOUT, 1.0)[1])
     seen = set()
     for line in chart.lines:

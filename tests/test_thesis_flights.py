@@ -20,7 +20,7 @@ from somersault.thesis.ch4 import _layout_takeoff as layout
 from somersault.thesis.ch4 import _lifetimes as ridge
 from somersault.thesis.ch4 import _tilt_and_twist_paths as reorientation
 from somersault.view import _figure as parts
-from somersault.view._contact_sheet import contact_sheet
+from somersault.view import contact_sheet
 
 QUICK = ["fig2-1", "eq2", "fig2-2", "fig2-4", "fig2-6", "fig2-7", "fig2-8", "fig3-3", "fig4-13"]
 PRINTED_WRONG = {"eq2.nu"}  # the thesis's errata: ±ν for ±jν

@@ -8,10 +8,8 @@ import sys
 
 import numpy as np
 
-from somersault.view import charts
+from somersault.view import Section, charts, contact_sheet, reproduction_page, simplest
 from somersault.view import style as look
-from somersault.view._report import Section, page
-from somersault.view._sketch import simplest
 
 
 def test_importing_the_pictures_does_not_load_matplotlib():
@@ -21,7 +19,7 @@ def test_importing_the_pictures_does_not_load_matplotlib():
 
 def test_figures_need_no_pyplot():
     code = (
-        "import sys, io; from somersault.view import style as s, _sketch as k\n"
+        "import sys, io; from somersault.view import style as s; import somersault.view as k\n"
         "with s.style(): k.simplest().savefig(io.BytesIO(), format='png')\n"
         "sys.exit('matplotlib.pyplot' in sys.modules)"
     )
@@ -85,14 +83,14 @@ def test_page_escapes_everything():
         "note": '"note" <i>',
     }
     section = Section("<s>", "<t>", "<says>", "<found>", None, [claim], (("<h>",), [("<c>",)]))
-    text = page([section], [("<w>", "<p>", "<c>", "<y>")])
+    text = reproduction_page([section], [("<w>", "<p>", "<c>", "<y>")])
     for bad in ("<script", "<b>id", "<where>", "<says>", "<found>", "<h>", "<c>", "<w>", "<i>"):
         assert bad not in text, bad
     assert "a &lt; b &amp; c" in text
 
 
 def test_page_counts_claims_and_marks_what_is_beyond_the_thesis():
-    text = page([Section("x", "X", "says", "found", None, [], None, beyond=True)], [])
+    text = reproduction_page([Section("x", "X", "says", "found", None, [], None, beyond=True)], [])
     assert "Beyond the thesis" in text
     assert "Every claim holds." in text
 
@@ -100,7 +98,6 @@ def test_page_counts_claims_and_marks_what_is_beyond_the_thesis():
 def test_figures_of_a_flight_stay_clear_of_their_labels():
     """A body that is piked at takeoff reaches further once it is straight."""
     import somersault as so
-    from somersault.view._contact_sheet import contact_sheet
 
     flight = so.hula(spin=11.0, hold=0.16, duration=1.0).fly(samples=51)
     made = contact_sheet(flight, np.linspace(0, 1, 12), columns=6)

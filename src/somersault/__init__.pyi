@@ -16,6 +16,9 @@ from . import (
     flight as flight,
 )
 from . import (
+    history as history,
+)
+from . import (
     model as model,
 )
 from . import (
@@ -113,6 +116,15 @@ from .flight import (
 )
 from .flight import (
     with_momentum as with_momentum,
+)
+from .history import (
+    History as History,
+)
+from .history import (
+    Recording as Recording,
+)
+from .history import (
+    read_recording as read_recording,
 )
 from .model import (
     Body as Body,

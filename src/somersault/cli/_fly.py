@@ -41,13 +41,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> None:
     """Fly, write the history, print how it ended."""
+    from somersault._core.datasets import check_history_file
     from somersault._core.errors import SomersaultError
     from somersault.flight import fly
-    from somersault.flight._save import check_ending
     from somersault.spec import read_spec
 
     if chosen.out is not None:
-        check_ending(chosen.out)
+        check_history_file(chosen.out)
     spec = read_spec(chosen.spec)
     flight = fly(spec.model, spec.takeoff, spec.duration, **spec.options)
     if flight.ended in ("too many steps", "not finite"):

@@ -76,7 +76,7 @@ def _record(
     import numpy as np
 
     from somersault import rigid
-    from somersault.view._sphere import twist_text
+    from somersault.view.sphere import twist_text
 
     least, middle, greatest = rigid.energy_bounds(inertias, 1.0)
     rigid.separatrix(inertias)  # refuses a body that has none
@@ -109,11 +109,11 @@ def _title(name: str, pose: dict[str, float]) -> str:
 
 
 def _draw(path: Path, inertias: Array, count: int, title: str) -> None:
-    from somersault.view import _sphere
+    from somersault.view import sphere
     from somersault.view import style as look
 
     with look.style():
-        save_picture(path, _sphere.sphere_map(inertias, _sphere.energies(inertias, count), title))
+        save_picture(path, sphere.sphere_map(inertias, sphere.energies(inertias, count), title))
 
 
 _AXES = {1: "1 (front)", 2: "2 (left)", 3: "3 (head)"}

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from somersault._core.checks import by_name, instance, name_list, text, truth, whole_number
+from somersault._core.datasets import netcdf
 from somersault._core.errors import SomersaultError
 from somersault._core.files import write as write_file
 from somersault.ensembles import _run, _store
@@ -16,7 +17,6 @@ from somersault.ensembles._report import Report
 from somersault.ensembles._targets import unit
 from somersault.ensembles._vary import Vary
 from somersault.flight._fly import STEPS, Event, check_ending, flight_time
-from somersault.flight._save import netcdf
 from somersault.flight._takeoff import Takeoff, require_takeoff
 from somersault.model import Model, load
 

@@ -10,10 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.datasets import save_history
 from somersault.attitude import matrix_from_quaternion, unwrapped_angles
 from somersault.flight._course import Course
 from somersault.flight._start import Start
 from somersault.flight._system import System
+from somersault.history import summary
+from somersault.model import Model, centre_of_mass, segment_momenta
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,7 +44,7 @@ class Landing:
 
 @dataclass(frozen=True, eq=False)
 class Flight:
-    """One flight. `dataset` is its history; made by `fly`."""
+    """One flight, made by `fly`: a `somersault.history.History`; `dataset` is all of it."""
 
     system: System
     start: Start
@@ -54,11 +57,47 @@ class Flight:
     ended: str
     steps: int
 
+    def __repr__(self) -> str:
+        return f"{summary(self)}, ended by {self.ended}"
+
     @cached_property
     def _angles(self) -> Array:
         """Somersault, tilt, twist at every point, unwrapped, (points, 3)."""
         path = unwrapped_angles(self._states[:, :4], self.system.model.axes)
         return _from(path, self.start.angles)
+
+    @property
+    def angles(self) -> Array:
+        """Somersault, tilt and twist at the sample times, unwrapped, (time, 3), rad."""
+        return self._angles[self._keep]
+
+    @property
+    def model(self) -> Model:
+        """What flew."""
+        return self.system.model
+
+    @property
+    def base_quaternion(self) -> Array:
+        """Scalar first, base to inertial, (time, 4)."""
+        return self.states[:, :4]
+
+    @cached_property
+    def base_position(self) -> Array:
+        """Of the base frame's origin in inertial axes, (time, 3), m."""
+        centre = centre_of_mass(self.model, self.joint_coordinates)
+        turn = matrix_from_quaternion(self.base_quaternion)
+        return self.centre_of_mass - np.einsum("tij,tj->ti", turn, centre)
+
+    @property
+    def joint_coordinates(self) -> Array:
+        """At the sample times, (time, coordinates), rad, m, or quaternions."""
+        return self._read[1]
+
+    @cached_property
+    def centre_of_mass(self) -> Array:
+        """Of the whole body in inertial axes, (time, 3), m; at takeoff it is at the origin."""
+        fallen = 0.5 * self.times[:, None] ** 2 * self.gravity
+        return self.times[:, None] * self.velocity + fallen
 
     @cached_property
     def times(self) -> Array:
@@ -130,6 +169,27 @@ class Flight:
         h = self.system.equations.momentum(self._joints[0], self._speeds)[:, :3]
         return np.einsum("tij,tj->ti", matrix_from_quaternion(self.states[:, :4]), h)
 
+    @property
+    def segment_momentum(self) -> xr.DataArray:
+        """Angular momentum of each body about the whole body's centre of mass, in inertial axes,
+        (time, body, inertial_axis), kg m²/s: over the bodies it sums to `angular_momentum`."""
+        import xarray as xr
+
+        q, u = self._joints
+        momenta = segment_momenta(self.model, q, self.angular_velocity, u)
+        turn = matrix_from_quaternion(self.base_quaternion)
+        return xr.DataArray(
+            np.einsum("tij,tbj->tbi", turn, momenta),
+            {
+                "time": self.times,
+                "body": [body.name for body in self.model.bodies],
+                "inertial_axis": [1, 2, 3],
+            },
+            ("time", "body", "inertial_axis"),
+            "segment_momentum",
+            {"units": "kg m2/s"},
+        )
+
     @cached_property
     def kinetic_energy(self) -> Array:
         """Of motion about the centre of mass, (time,), J."""
@@ -188,10 +248,8 @@ class Flight:
         return xr.Dataset(self._variables(), self._coordinates(), self._attributes())
 
     def _variables(self) -> dict[str, Any]:
-        angles = self._angles[self._keep]
+        angles = self.angles
         q, u = self._joints
-        fallen = 0.5 * self.times[:, None] ** 2 * self.gravity
-        centre = self.times[:, None] * self.velocity + fallen
         rad = {"units": "rad"}
         return {
             "somersault": ("time", angles[:, 0], rad),
@@ -206,7 +264,8 @@ class Flight:
             ),
             "kinetic_energy": ("time", self.kinetic_energy, {"units": "J"}),
             "spring_energy": ("time", self.spring_energy, {"units": "J"}),
-            "centre_of_mass": (("time", "inertial_axis"), centre, {"units": "m"}),
+            "centre_of_mass": (("time", "inertial_axis"), self.centre_of_mass, {"units": "m"}),
+            "base_position": (("time", "inertial_axis"), self.base_position, {"units": "m"}),
         }  # fmt: skip
 
     def _coordinates(self) -> dict[str, Any]:
@@ -228,15 +287,13 @@ class Flight:
 
     def plot(self) -> Figure:
         """The history as a matplotlib picture (`.savefig(file)` writes it)."""
-        from somersault.flight._plot import plot
+        from somersault.view import time_histories
 
-        return plot(self)
+        return time_histories(self, f"{self.model.name}, ended by {self.ended}")
 
     def save(self, path: str | Path) -> None:
         """Write the history as NetCDF (.nc) or CSV (.csv), whole or not at all."""
-        from somersault.flight._save import save
-
-        save(self, Path(path))
+        save_history(self.dataset, Path(path))
 
 
 def _from(path: Array, given: Array) -> Array:

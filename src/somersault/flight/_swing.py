@@ -23,6 +23,7 @@ from somersault.attitude import quaternion_from_matrix
 from somersault.dynamics import Equations
 from somersault.engine._integrator import STATUS, Integrator
 from somersault.flight._takeoff import JointTakeoff, Takeoff
+from somersault.history import summary
 from somersault.model import Joint, Model, body_frames, body_velocities, centre_of_mass
 from somersault.model._mounted import Mount
 from somersault.model._pose import pose, spread
@@ -65,7 +66,7 @@ class Stop:
 
 @dataclass(frozen=True, eq=False)
 class Swing:
-    """The motion of a model with a fixed base from rest or a push.
+    """The motion of a model with a fixed base from rest or a push, a `somersault.history.History`.
 
     `times` (T,) s, `q` and `u` (T, joints), the last where it `ended` ("duration", "event").
     """
@@ -77,6 +78,29 @@ class Swing:
     q: Array
     u: Array
     ended: str
+
+    def __repr__(self) -> str:
+        return f"{summary(self)}, ended by {self.ended}"
+
+    @property
+    def base_position(self) -> Array:
+        """Of the ground that holds it, (T, 3): zero."""
+        return np.zeros((len(self.times), 3))
+
+    @property
+    def base_quaternion(self) -> Array:
+        """Of the ground that holds it, (T, 4): no turn."""
+        return np.tile([1.0, 0.0, 0.0, 0.0], (len(self.times), 1))
+
+    @property
+    def angles(self) -> Array:
+        """Somersault, tilt and twist of the ground, (T, 3): zero."""
+        return np.zeros((len(self.times), 3))
+
+    @property
+    def joint_coordinates(self) -> Array:
+        """(T, joints), rad or m."""
+        return self.q
 
     @cached_property
     def equations(self) -> Equations:

@@ -16,7 +16,7 @@ from somersault.thesis._errata import ERRATA
 from somersault.thesis._registry import ENTRIES
 
 if TYPE_CHECKING:
-    from somersault.view._report import Section
+    from somersault.view import Section
 
 
 def reproduce(
@@ -48,8 +48,8 @@ def reproduce(
 
 def _made(chosen: Sequence[Entry], folder: Path, progress: bool) -> list[Claim]:
     """Everything, in a folder that nobody sees before it is whole."""
+    from somersault.view import reproduction_page
     from somersault.view import style as look
-    from somersault.view._report import page
 
     sections: list[Section] = []
     claims: list[Claim] = []
@@ -63,7 +63,7 @@ def _made(chosen: Sequence[Entry], folder: Path, progress: bool) -> list[Claim]:
     records = [claim.record() for claim in claims]
     write(folder / "claims.json", json.dumps(records, indent=1, ensure_ascii=False) + "\n")
     errata = [(e.where, e.printed, e.correct, e.why) for e in ERRATA]
-    write(folder / "index.html", page(sections, errata))
+    write(folder / "index.html", reproduction_page(sections, errata))
     return claims
 
 
@@ -103,7 +103,7 @@ def _save(figure: Any, stem: Path) -> None:
 
 
 def _section(entry: Entry, result: Result) -> Section:
-    from somersault.view._report import Section
+    from somersault.view import Section
 
     table = (result.table.header, result.table.rows) if result.table is not None else None
     return Section(

@@ -1,4 +1,4 @@
-"""Contact sheets: a flight as a row of pictures."""
+"""Contact sheets: a motion as rows of pictures."""
 
 from __future__ import annotations
 
@@ -17,32 +17,53 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from somersault.flight import Flight
-    from somersault.model import Model
+    from somersault.history import History
 
 _VIEW = (35.0, 12.0)  # degrees: from the front, a little to the left and above
 
 
 def contact_sheet(
-    flight: Flight,
+    history: History,
     times: Sequence[float] | Array,
     columns: int = 8,
     view: tuple[float, float] = _VIEW,
     title: str = "",
 ) -> Figure:
-    """Pictures of a flight at some times (s), in rows, each with its time and its angles.
+    """Pictures of a motion at some times, in rows, each with its time and its angles.
 
-    Each is the flight's sample nearest to the time asked for. The centre of mass stands
-    still; `view` is the camera's azimuth and elevation in degrees, from the front towards the left
-    and up, as the model's `axes` have them at takeoff.
+    The centre of mass stands still.
+
+    Parameters
+    ----------
+    history : History
+        A flight, a swing, a recording.
+    times : sequence of float
+        s; each picture is of the sample nearest to the time asked for.
+    columns : int
+        Pictures in a row.
+    view : (float, float)
+        Azimuth and elevation of the camera in degrees, from the front towards the left and up, as
+        the model's `axes` have them with no turn of the base.
+    title : str, optional
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> from somersault.view import contact_sheet
+    >>> flight = so.arm_tilt().fly()
+    >>> picture = contact_sheet(flight, [0.0, 0.2, 0.4], columns=3)
     """
     rows = -(-len(times) // columns)
     made = look.figure(1.15 * columns, 1.75 * rows + 0.3)
     grid = made.subplots(rows, 1, squeeze=False)[:, 0]
-    size = _size(flight, times)
+    size = _size(history, times)
     for row, ax in enumerate(grid):
         shown = times[row * columns : (row + 1) * columns]
-        strip(ax, flight, shown, columns, view, size=size)
+        strip(ax, history, shown, columns, view, size=size)
     if title:
         made.suptitle(title, fontsize=10)
     return made
@@ -50,33 +71,38 @@ def contact_sheet(
 
 def strip(
     ax: Axes,
-    flight: Flight,
+    history: History,
     times: Sequence[float] | Array,
     columns: int | None = None,
     view: tuple[float, float] = _VIEW,
     words: bool = True,
     size: float | None = None,
 ) -> None:
-    """One row of pictures of a flight on axes of their own.
+    """One row of pictures of a motion on axes of their own.
 
-    `size` (m) is the room for each, from its centre of mass: as far as any of them reaches, if it
-    is not given.
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+    history, times, view
+        As in `contact_sheet`.
+    columns : int, optional
+        Pictures that the row has room for: as many as there are times, if it is not given.
+    words : bool
+        Whether the time and the angles stand below each.
+    size : float, optional
+        Room for each, in m from its centre of mass: as far as any of them reaches, if it is not
+        given.
     """
-    model = flight.system.model
-    history = flight.dataset
-    size = _size(flight, times) if size is None else size
+    model = history.model
+    size = _size(history, times) if size is None else size
     seen = parts.camera(*view, model.axes)
     for place, moment in enumerate(times):
-        here = history.isel(time=_nearest(flight, moment))
-        turn = matrix_from_quaternion(here["quaternion"].values)
+        k = _nearest(history, moment)
+        turn = matrix_from_quaternion(history.base_quaternion[k])
         x = 1.7 * size * place
-        parts.draw(ax, model, here["joint_angle"].values, turn, seen, (x, 0.0))
+        parts.draw_pose(ax, model, history.joint_coordinates[k], turn, seen, (x, 0.0))
         if words:
-            turns = float(here["somersault"]) / (2 * np.pi)
-            text = (
-                f"{float(here['time']):.2f} s\n{turns:.2f} turns\n"
-                f"twist {np.degrees(float(here['twist'])):.0f}°"
-            )
+            text = _words(history, k)
             look.label(ax, x, -1.12 * size, text, look.GREY, ha="center", va="top", fontsize=7.5)
     count = columns or len(times)
     ax.set(xlim=(-0.95 * size, (1.7 * count - 0.75) * size))
@@ -85,24 +111,28 @@ def strip(
     ax.axis("off")
 
 
-def _nearest(flight: Flight, moment: float) -> int:
+def _words(history: History, k: int) -> str:
+    """The time and, of what is free in the air, the turns."""
+    time = f"{history.times[k]:.2f} s"
+    if not history.model.free:
+        return time
+    somersault, _, twist = history.angles[k]
+    return f"{time}\n{somersault / (2 * np.pi):.2f} turns\ntwist {np.degrees(twist):.0f}°"
+
+
+def _nearest(history: History, moment: float) -> int:
     """The sample nearest to a time."""
-    return int(np.argmin(np.abs(flight.times - moment)))
+    return int(np.argmin(np.abs(history.times - moment)))
 
 
-def _size(flight: Flight, times: Sequence[float] | Array) -> float:
+def _size(history: History, times: Sequence[float] | Array) -> float:
     """How far the model reaches from its centre of mass at most in its poses at some times, m."""
-    angles = flight.dataset["joint_angle"].values
-    return max(_reach(flight.system.model, angles[_nearest(flight, t)]) for t in times)
-
-
-def _reach(model: Model, q: Array) -> float:
+    model, q = history.model, history.joint_coordinates[[_nearest(history, t) for t in times]]
     rotations, origins = body_frames(model, q)
     centre = centre_of_mass(model, q)
-    return max(
-        float(
-            np.linalg.norm(origins[s.body] + s.points @ rotations[s.body].T - centre, axis=1).max()
-        )
-        + s.radius
-        for s in parts.solids(model)
-    )
+    reach = []
+    for solid in parts.solids(model):
+        turned = solid.points @ np.swapaxes(rotations[:, solid.body], -1, -2)
+        away = origins[:, solid.body, None] + turned - centre[:, None]
+        reach.append(float(np.linalg.norm(away, axis=-1).max()) + solid.radius)
+    return max(reach)

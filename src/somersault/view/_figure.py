@@ -123,7 +123,7 @@ def camera(azimuth: float, elevation: float, axes: BodyAxes = AXES) -> Array:
     return seen @ np.array(in_sequence(list(np.eye(3)), axes))
 
 
-def draw(
+def draw_pose(
     ax: Axes,
     model: Model,
     q: Array,

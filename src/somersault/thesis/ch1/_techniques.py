@@ -255,8 +255,8 @@ def _twists_at(maneuver: Maneuver, time: float) -> float:
 
 
 def _draw_1_1() -> Figure:
+    from somersault.view import strip
     from somersault.view import style as look
-    from somersault.view._contact_sheet import strip
 
     made = look.figure(10.0, 6.2)
     grid = made.subplots(3, 2, width_ratios=(2.7, 1))

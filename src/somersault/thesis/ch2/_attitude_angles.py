@@ -13,7 +13,7 @@ from somersault.thesis._entries import Result
 
 def fig_2_1() -> Result:
     """Somersault, tilt and twist, one after the other."""
-    from somersault.view import _figure as parts
+    from somersault.view import camera, draw_pose
     from somersault.view import style as look
 
     steps = ((0, 0, 0), (50, 0, 0), (50, 25, 0), (50, 25, 70))
@@ -26,7 +26,7 @@ def fig_2_1() -> Result:
     made = look.figure(8.4, 3.2)
     ax = made.add_subplot()
     model = load("human_layout")
-    seen = parts.camera(38, 14)
+    seen = camera(38, 14)
     colors = (look.VERMILION, look.GREEN, look.BLUE)
     errors = []
     for place, (degrees, name) in enumerate(zip(steps, names, strict=True)):
@@ -34,7 +34,7 @@ def fig_2_1() -> Result:
         turn = attitude.direction_cosines(*turns).T
         errors.append(np.abs(turn - _turn(2, turns[0]) @ _turn(1, turns[1]) @ _turn(3, turns[2])))
         x = 2.6 * place
-        parts.draw(ax, model, model.home, turn, seen, (x, 0.0))
+        draw_pose(ax, model, model.home, turn, seen, (x, 0.0))
         for axis, color in enumerate(colors):
             tip = seen[:2] @ turn[:, axis] * 1.25
             ax.annotate(

@@ -98,8 +98,8 @@ def _prism(ax: Axes, k1: float, k3: float) -> None:
     """The uniform box of these ratios, beside its point."""
     from matplotlib.patches import Polygon
 
+    from somersault.view import camera
     from somersault.view import style as look
-    from somersault.view._figure import camera
 
     i = rigid.inertias_from_ratios(k1, k3)
     sides = np.sqrt(np.maximum(i.sum() / 2 - i, 0.0))

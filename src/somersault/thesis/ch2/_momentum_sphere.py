@@ -45,14 +45,13 @@ def fig_2_7() -> Result:
 
 
 def map_with_example(inertias: Array, title: str) -> Figure:
-    from somersault.view import _sphere
+    from somersault.view import camera, sphere
     from somersault.view import style as look
-    from somersault.view._figure import camera
 
-    made = _sphere.sphere_map(inertias, _sphere.energies(inertias, 6), title)
+    made = sphere.sphere_map(inertias, sphere.energies(inertias, 6), title)
     ball, chart = made.axes
     chart.plot(np.degrees(_EXAMPLE[1]), np.degrees(_EXAMPLE[0]), "o", color=look.BLACK, ms=5)
-    spot = camera(*_sphere.VIEW) @ rigid.momentum_direction(*_EXAMPLE)
+    spot = camera(*sphere.VIEW) @ rigid.momentum_direction(*_EXAMPLE)
     ball.plot(spot[0], spot[1], "o", color=look.BLACK, ms=5, zorder=9)
     return made
 
@@ -185,8 +184,8 @@ def fig_2_8() -> Result:
 def _draw_2_8() -> Figure:
     from matplotlib.patches import Circle
 
+    from somersault.view import camera
     from somersault.view import style as look
-    from somersault.view._figure import camera
 
     made = look.figure(5.0, 4.8)
     ax = made.add_subplot()

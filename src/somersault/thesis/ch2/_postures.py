@@ -40,7 +40,7 @@ def fig_2_5() -> Result:
 
 
 def _draw_2_5() -> Figure:
-    from somersault.view import _figure as parts
+    from somersault.view import camera, draw_pose
     from somersault.view import style as look
 
     made = look.figure(7.2, 3.6)
@@ -48,7 +48,7 @@ def _draw_2_5() -> Figure:
     for place, name in enumerate(POSTURES):
         model = load(f"human_{name}")
         x = 1.35 * place
-        parts.draw(ax, model, model.home, np.eye(3), parts.camera(62, 10), (x, 0.0))
+        draw_pose(ax, model, model.home, np.eye(3), camera(62, 10), (x, 0.0))
         look.label(ax, x, -1.25, name, ha="center", fontsize=11)
     ax.set(xlim=(-0.7, 3.5), ylim=(-1.35, 1.15))
     ax.set_aspect("equal")

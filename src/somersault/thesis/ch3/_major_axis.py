@@ -14,7 +14,7 @@ from somersault.thesis.ch2._momentum_sphere import minor_share
 
 def fig_3_3() -> Result:
     """A spin about the major axis: tuck."""
-    from somersault.view import _sphere
+    from somersault.view import sphere
 
     inertias = st.principal_inertias("human_tuck")
     pike = 1 - minor_share(st.principal_inertias("human_pike"))
@@ -53,7 +53,7 @@ def fig_3_3() -> Result:
         f"Round its major axis lie {100 * share:.0f} % of the sphere (human_pike: "
         f"{100 * pike:.0f} %), a narrow lune because I1 is nearly I2.",
         claims,
-        _sphere.sphere_map(inertias, _sphere.energies(inertias, 6), "human_tuck held rigid"),
+        sphere.sphere_map(inertias, sphere.energies(inertias, 6), "human_tuck held rigid"),
     )
 
 

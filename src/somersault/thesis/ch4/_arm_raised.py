@@ -116,17 +116,17 @@ def fig_4_13() -> Result:
 
 
 def _draw_4_13(flown: Flight, body: float, incline: float) -> Figure:
-    from somersault.view import _figure as parts
+    from somersault.view import camera, draw_pose
     from somersault.view import style as look
 
     made = look.figure(7.4, 4.2)
     ax = made.add_subplot()
-    seen = parts.camera(0, 0)
+    seen = camera(0, 0)
     model = flown.system.model
     joints = flown.dataset["joint_angle"].values
     turns = matrix_from_quaternion(flown.dataset["quaternion"].values)
     for place, step in ((0.0, 0), (1.9, -1)):
-        parts.draw(ax, model, joints[step], turns[step], seen, (place, 0.0))
+        draw_pose(ax, model, joints[step], turns[step], seen, (place, 0.0))
         angle = 0.0 if step == 0 else body + incline
         for line, color, ls in ((0.0, look.GREY, ":"), (angle, look.VERMILION, "-")):
             for turn in (line, line + np.pi / 2):

@@ -111,7 +111,7 @@ def _long_claims(name: str, which: str, flown: Flight, begun: Begun) -> list[Cla
 
 
 def _draw_4_3_3() -> Figure:
-    from somersault.view._contact_sheet import contact_sheet
+    from somersault.view import contact_sheet
 
     flown = long_run(*_RUNS[0], "momentum")
     start = takeoff(sprung(_RUNS[0][1], _RUNS[0][0]), begun="momentum")

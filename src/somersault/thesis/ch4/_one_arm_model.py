@@ -79,7 +79,7 @@ def fig_4_16() -> Result:
     body, arm = model.bodies
     apart = np.abs(np.array(arm.position) + np.array(arm.com) - np.array(body.com)).max()
     along = np.abs(np.array(arm.joints[0].anchor) - np.array(arm.com)).max()
-    from somersault.view._sketch import simplest
+    from somersault.view import simplest
 
     return Result(
         "The simplest model that captures passive layout stability: a single arm allowed to pivot "

@@ -160,8 +160,8 @@ def _stiff_claims() -> list[Claim]:
 
 
 def _draw_4_2(soft: Flight) -> Figure:
+    from somersault.view import strip
     from somersault.view import style as look
-    from somersault.view._contact_sheet import strip
 
     made = look.figure(8.2, 9.2)
     grid = made.subplots(5, 1, height_ratios=(1, 1, 1, 0.75, 0.75))

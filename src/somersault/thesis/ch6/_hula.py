@@ -185,8 +185,8 @@ def _arms_claim(found: Extensions) -> Claim:
 
 
 def _draw_6_3() -> Figure:
+    from somersault.view import strip
     from somersault.view import style as look
-    from somersault.view._contact_sheet import strip
 
     made = look.figure(9.4, 6.0)
     grid = made.add_gridspec(2, 2, height_ratios=(1, 1.35))

@@ -95,7 +95,7 @@ def fig_6_1() -> Result:
 
 
 def _draw_6_1() -> Figure:
-    from somersault.view._contact_sheet import contact_sheet
+    from somersault.view import contact_sheet
 
     return contact_sheet(rudi.nominal(), np.linspace(0, rudi.landing_time(), 12), columns=6)
 

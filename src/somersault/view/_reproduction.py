@@ -1,4 +1,4 @@
-"""The report page: one HTML file, its pictures beside it, nothing fetched from elsewhere."""
+"""The page of what was reproduced: one HTML file with its pictures next to it, nothing fetched."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ details summary { cursor: pointer; color: var(--link); }
 """
 
 
-def page(sections: Sequence[Section], errata: Iterable[Sequence[str]]) -> str:
+def reproduction_page(sections: Sequence[Section], errata: Iterable[Sequence[str]]) -> str:
     """The whole page."""
     claims = [claim for section in sections for claim in section.claims]
     bad = [claim for claim in claims if not claim["holds"]]

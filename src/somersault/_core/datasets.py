@@ -1,4 +1,4 @@
-"""Histories of flights as files."""
+"""Labelled datasets as files: NetCDF, or CSV with a unit in each column's name."""
 
 from __future__ import annotations
 
@@ -13,24 +13,21 @@ from somersault._core.files import write
 if TYPE_CHECKING:
     import xarray as xr
 
-    from somersault.flight._flight import Flight
+
+def save_history(data: xr.Dataset, path: Path) -> None:
+    """Write a dataset over `time` as NetCDF or CSV by the file's ending, whole or not at all."""
+    check_history_file(path)
+    write(path, csv(data) if path.suffix.lower() == ".csv" else netcdf(data))
 
 
-def save(flight: Flight, path: Path) -> None:
-    """Write NetCDF or CSV by the file's ending, whole or not at all."""
-    check_ending(path)
-    write(path, csv(flight) if path.suffix.lower() == ".csv" else netcdf(flight.dataset))
-
-
-def check_ending(path: Path) -> None:
+def check_history_file(path: Path) -> None:
     """SomersaultError unless flights can be written to a file of that name."""
     if path.suffix.lower() not in (".csv", ".nc"):
         raise SomersaultError(f"{path.name}: flights are written as .nc (NetCDF) or .csv")
 
 
-def csv(flight: Flight) -> str:
+def csv(data: xr.Dataset) -> str:
     """One row a sample; the header names each column with its unit."""
-    data = flight.dataset
     columns: dict[str, list[float]] = {"time [s]": data["time"].values.tolist()}
     for name, variable in data.data_vars.items():
         unit = variable.attrs["units"]
