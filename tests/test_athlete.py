@@ -17,9 +17,15 @@ from scipy.spatial.transform import Rotation
 from somersault import stability
 from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault.attitude import matrix_from_quaternion
-from somersault.model import Model, athlete, athlete_from_measurements, load, named_pose
-from somersault.model._mirror import mirror_pairs
-from somersault.model._pose import pose
+from somersault.model import (
+    Model,
+    athlete,
+    athlete_from_measurements,
+    load,
+    mirror_pairs,
+    named_pose,
+    pose,
+)
 from somersault.model.athlete._athlete import INWARD
 from somersault.model.athlete._de_leva import FEMALE, MALE, TABLES
 

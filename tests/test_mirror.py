@@ -17,10 +17,18 @@ import numpy as np
 import pytest
 from trees import mujoco_addresses, random_tree, to_mujoco
 
-from somersault.model import Body, Joint, Model, load
-from somersault.model._mirror import Pair, common_name, mirror_pairs
-from somersault.model._pose import pose
-from somersault.model._weld import as_matrix, as_vector
+from somersault.model import (
+    Body,
+    Joint,
+    Model,
+    Pair,
+    as_matrix,
+    as_vector,
+    common_name,
+    load,
+    mirror_pairs,
+    pose,
+)
 from somersault.stability import spin
 
 HUMANOIDS = {

@@ -12,8 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from somersault import SomersaultError
-from somersault.model import GROUND, Body, Joint, Model, load, shipped
-from somersault.model._weld import as_matrix
+from somersault.model import GROUND, Body, Joint, Model, as_matrix, load, shipped
 
 NAN, INF = float("nan"), float("inf")
 ORIGIN = (0.0, 0.0, 0.0)

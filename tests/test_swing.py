@@ -14,8 +14,7 @@ from somersault import SomersaultError
 from somersault.dynamics import Equations
 from somersault.flight import JointTakeoff, fly
 from somersault.flight._swing import GRAVITY, Stop, Swing, height_energy, released, swing
-from somersault.model import GROUND, Body, Joint, Model, load
-from somersault.model._mounted import Mount, mounted
+from somersault.model import GROUND, Body, Joint, Model, Mount, load, mounted
 
 G = -GRAVITY[2]
 TURNED = ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))

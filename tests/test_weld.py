@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from somersault.model._types import GROUND, Body, Joint
-from somersault.model._weld import as_matrix, as_vector, merge_welded
+from somersault.model import GROUND, Body, Joint, as_matrix, as_vector, merge_welded
 
 Moments = tuple[float, np.ndarray, np.ndarray]  # mass, com, inertia about it
 

@@ -17,8 +17,7 @@ import numpy as np
 
 from somersault.attitude import matrix_from_quaternion
 from somersault.dynamics import Equations
-from somersault.model import GROUND, Body, Joint, Model, load
-from somersault.model._weld import as_matrix, as_vector
+from somersault.model import GROUND, Body, Joint, Model, as_matrix, as_vector, load
 
 KINDS = ("hinge", "slide", "ball")
 

@@ -7,28 +7,67 @@ from somersault.model._kinematics import (
     segment_momenta,
 )
 from somersault.model._load import load, shipped
+from somersault.model._mirror import (
+    Pair,
+    common_name,
+    mirror_pairs,
+    named_pairs,
+    reflection,
+    sides,
+)
 from somersault.model._mounted import Mount, mounted
-from somersault.model._types import GROUND, LIMIT_SLACK, Body, Follow, Joint, Model
+from somersault.model._pose import pose, spread
+from somersault.model._types import (
+    FREE_IT,
+    GROUND,
+    IDENTITY,
+    LIMIT_SLACK,
+    ZERO,
+    Body,
+    Follow,
+    Joint,
+    Matrix,
+    Model,
+    Vector,
+)
+from somersault.model._weld import as_matrix, as_vector, merge_welded
 from somersault.model.athlete._measured import athlete_from_measurements
-from somersault.model.athlete._poses import named_pose
+from somersault.model.athlete._poses import named_pose, pose_names
 from somersault.model.athlete._stature import athlete
 
 __all__ = [
+    "FREE_IT",
     "GROUND",
+    "IDENTITY",
     "LIMIT_SLACK",
+    "ZERO",
     "Body",
     "Follow",
     "Joint",
+    "Matrix",
     "Model",
     "Mount",
+    "Pair",
+    "Vector",
+    "as_matrix",
+    "as_vector",
     "athlete",
     "athlete_from_measurements",
     "body_frames",
     "body_velocities",
     "centre_of_mass",
+    "common_name",
     "load",
+    "merge_welded",
+    "mirror_pairs",
     "mounted",
+    "named_pairs",
     "named_pose",
+    "pose",
+    "pose_names",
+    "reflection",
     "segment_momenta",
     "shipped",
+    "sides",
+    "spread",
 ]
