@@ -19,7 +19,6 @@ from somersault.thesis.ch4 import _arm_raised as asymmetry
 from somersault.thesis.ch4 import _layout_takeoff as layout
 from somersault.thesis.ch4 import _lifetimes as ridge
 from somersault.thesis.ch4 import _tilt_and_twist_paths as reorientation
-from somersault.view import _figure as parts
 from somersault.view import contact_sheet
 
 QUICK = ["fig2-1", "eq2", "fig2-2", "fig2-4", "fig2-6", "fig2-7", "fig2-8", "fig3-3", "fig4-13"]
@@ -148,16 +147,6 @@ def test_principal_axes_circle_and_the_arms_answer():
 
 
 # -------------------------------------------------------------------------- posed pictures
-
-
-def test_solids_are_the_files_own_and_sticks_otherwise():
-    furrer = so.load("furrer")
-    assert len(parts.solids(furrer)) == 6
-    other = furrer.renamed("someone")
-    sticks = parts.solids(other)
-    assert {s.body for s in sticks} == {0, 1, 2}
-    assert all(s.radius > 0 for s in sticks)
-    assert len(parts.solids(so.load("human_tuck"))) == 14  # all welded into one body
 
 
 def test_contact_sheet_has_a_picture_for_each_time():

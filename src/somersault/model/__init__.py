@@ -17,20 +17,18 @@ from somersault.model._mirror import (
 )
 from somersault.model._mounted import Mount, mounted
 from somersault.model._pose import pose, spread
+from somersault.model._skeleton import model_shapes
 from somersault.model._types import (
     FREE_IT,
     GROUND,
-    IDENTITY,
     LIMIT_SLACK,
-    ZERO,
     Body,
     Follow,
     Joint,
-    Matrix,
     Model,
-    Vector,
 )
-from somersault.model._weld import as_matrix, as_vector, merge_welded
+from somersault.model._vectors import IDENTITY, ZERO, Matrix, Vector, as_matrix, as_vector
+from somersault.model._weld import merge_welded
 from somersault.model.athlete._measured import athlete_from_measurements
 from somersault.model.athlete._poses import named_pose, pose_names
 from somersault.model.athlete._stature import athlete
@@ -60,6 +58,7 @@ __all__ = [
     "load",
     "merge_welded",
     "mirror_pairs",
+    "model_shapes",
     "mounted",
     "named_pairs",
     "named_pose",

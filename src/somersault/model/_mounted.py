@@ -10,8 +10,9 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.checks import instance, shown
 from somersault._core.errors import SomersaultError
-from somersault.model._types import GROUND, IDENTITY, ZERO, Body, Matrix, Model, Vector
-from somersault.model._weld import as_matrix, as_vector, merge_welded
+from somersault.model._types import GROUND, Body, Model
+from somersault.model._vectors import IDENTITY, ZERO, Matrix, Vector, as_matrix, as_vector
+from somersault.model._weld import merge_welded
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
@@ -16,12 +16,9 @@ import numpy as np
 
 from somersault._core.errors import SomersaultError
 from somersault.attitude import AXES, Axes, as_axes
+from somersault.model._vectors import IDENTITY, ZERO, Matrix, Vector
+from somersault.model.shapes import Shape
 
-Vector = tuple[float, float, float]
-Matrix = tuple[Vector, Vector, Vector]
-
-ZERO: Vector = (0.0, 0.0, 0.0)
-IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 FREE_IT = (
     "give its base a free joint (in a .bioMod: its root segment translations xyz beside "
     "rotations xyz)"
@@ -87,7 +84,8 @@ class Body:
 
     `position` and `rotation` (columns: this body's axes) place its frame in its parent's
     when every joint of it stands at its reference. `com` and `inertia` (about `com`) are in
-    the body's own axes; kg, m, kg m².
+    the body's own axes; kg, m, kg m². `shapes` are what there is to see of it, in its own axes:
+    they decide nothing, so bodies that differ in them alone are equal.
     """
 
     name: str
@@ -98,6 +96,7 @@ class Body:
     position: Vector = ZERO
     rotation: Matrix = IDENTITY
     joints: tuple[Joint, ...] = ()
+    shapes: tuple[Shape, ...] = field(default=(), compare=False, repr=False)
 
 
 @dataclass(frozen=True)

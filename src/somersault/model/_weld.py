@@ -7,7 +7,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.model._types import GROUND, Body, Matrix, Vector
+from somersault.model._types import GROUND, Body
+from somersault.model._vectors import as_matrix, as_vector
+from somersault.model.shapes import Shape
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,19 +23,21 @@ class _Place:
 
 @dataclass(slots=True)
 class _Lump:
-    """Masses gathered in the axes of one kept body."""
+    """Masses and shapes gathered in the axes of one kept body."""
 
     masses: list[float] = field(default_factory=list)
     coms: list[Array] = field(default_factory=list)
     inertias: list[Array] = field(default_factory=list)
+    shapes: list[Shape] = field(default_factory=list)
 
     def add(self, body: Body, position: Array, rotation: Array) -> None:
         self.masses.append(body.mass)
         self.coms.append(position + rotation @ np.array(body.com))
         self.inertias.append(rotation @ np.array(body.inertia) @ rotation.T)
+        self.shapes += [shape.placed(position, rotation) for shape in body.shapes]
 
     def joined(self, body: Body) -> Body:
-        """`body` with the mass, com and inertia of the whole lump (parallel axes)."""
+        """`body` with the mass, com, inertia (parallel axes) and shapes of the whole lump."""
         masses, coms = np.array(self.masses), np.array(self.coms)
         mass = float(masses.sum())
         com = masses @ coms / mass if mass > 0 else coms[0]
@@ -42,7 +46,13 @@ class _Lump:
             arm = c - com
             inertia += own + m * (arm @ arm * np.eye(3) - np.outer(arm, arm))
         inertia = (inertia + inertia.T) / 2  # rounding must not look like a mistake in the file
-        return replace(body, mass=mass, com=as_vector(com), inertia=as_matrix(inertia))
+        return replace(
+            body,
+            mass=mass,
+            com=as_vector(com),
+            inertia=as_matrix(inertia),
+            shapes=tuple(self.shapes),
+        )
 
 
 @np.errstate(over="ignore", invalid="ignore")  # numbers out of range are refused by `Model`
@@ -52,7 +62,8 @@ def merge_welded(bodies: list[Body], free: bool) -> tuple[Body, ...]:
     `bodies` are in order, parents first. With a `free` base body 0 stays although it has no
     joints. Bodies without joints whose parent is `GROUND` never move and are dropped; what
     hangs on them hangs on `GROUND` instead. Frames are composed, masses and inertias joined
-    about the common centre of mass; the bodies that remain keep their names, axes and order.
+    about the common centre of mass, shapes carried along; the bodies that remain keep their names,
+    axes and order.
     """
     kept: list[Body] = []
     lumps: list[_Lump] = []
@@ -79,15 +90,3 @@ def merge_welded(bodies: list[Body], free: bool) -> tuple[Body, ...]:
 
 def _hung(body: Body, parent: int, position: Array, rotation: Array) -> Body:
     return replace(body, parent=parent, position=as_vector(position), rotation=as_matrix(rotation))
-
-
-def as_vector(array: Array) -> Vector:
-    """Three numbers of an array as the tuple that the model types hold."""
-    x, y, z = array.tolist()
-    return (x, y, z)
-
-
-def as_matrix(array: Array) -> Matrix:
-    """A 3 x 3 array as the tuple of rows that the model types hold."""
-    first, second, third = (as_vector(row) for row in array)
-    return (first, second, third)

@@ -9,7 +9,6 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault.attitude import matrix_from_quaternion
-from somersault.model import body_frames, centre_of_mass
 from somersault.view import _figure as parts
 from somersault.view import style as look
 
@@ -127,12 +126,8 @@ def _nearest(history: History, moment: float) -> int:
 
 def _size(history: History, times: Sequence[float] | Array) -> float:
     """How far the model reaches from its centre of mass at most in its poses at some times, m."""
-    model, q = history.model, history.joint_coordinates[[_nearest(history, t) for t in times]]
-    rotations, origins = body_frames(model, q)
-    centre = centre_of_mass(model, q)
-    reach = []
-    for solid in parts.solids(model):
-        turned = solid.points @ np.swapaxes(rotations[:, solid.body], -1, -2)
-        away = origins[:, solid.body, None] + turned - centre[:, None]
-        reach.append(float(np.linalg.norm(away, axis=-1).max()) + solid.radius)
-    return max(reach)
+    q = history.joint_coordinates[[_nearest(history, t) for t in times]]
+    return max(
+        float(np.linalg.norm(points, axis=-1).max()) + radius
+        for _, points, radius in parts.hulls(history.model, q)
+    )

@@ -7,14 +7,16 @@ each elbow, two in each hip, and one in the torso, where the upper body twists a
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.checks import one_of, text, truth
-from somersault.model._types import GROUND, IDENTITY, ZERO, Body, Joint, Matrix, Model, Vector
+from somersault.model._types import GROUND, Body, Joint, Model
+from somersault.model._vectors import IDENTITY, ZERO, Matrix, Vector
+from somersault.model.shapes import Shape
 
 Shoulders = Literal["hinges", "ball"]
 
@@ -40,19 +42,26 @@ FRONT, LEFT, HEAD = np.eye(3)
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """Mass (kg), centre of mass (3,) in m, and inertia (3, 3) about it, from some joint."""
+    """Mass (kg), centre of mass (3,) in m, inertia (3, 3) about it, and looks, from some joint."""
 
     mass: float
     com: Array
     inertia: Array
+    shapes: tuple[Shape, ...] = ()
 
     def moved(self, by: Array) -> Part:
         """The same part, seen from a point that lies at −`by` (3,)."""
-        return Part(self.mass, self.com + by, self.inertia)
+        shapes = tuple(shape.placed(by, np.eye(3)) for shape in self.shapes)
+        return Part(self.mass, self.com + by, self.inertia, shapes)
 
     def turned(self, rotation: Array) -> Part:
-        """The same part, turned (3, 3) about the point it is seen from."""
-        return Part(self.mass, rotation @ self.com, rotation @ self.inertia @ rotation.T)
+        """The same part, turned (3, 3), or mirrored, about the point it is seen from."""
+        shapes = tuple(shape.placed(np.zeros(3), rotation) for shape in self.shapes)
+        return Part(self.mass, rotation @ self.com, rotation @ self.inertia @ rotation.T, shapes)
+
+    def looking(self, *shapes: Shape) -> Part:
+        """The same part with these shapes."""
+        return replace(self, shapes=shapes)
 
     def mirrored(self) -> Part:
         """The right side's part, if this is the left one's."""
@@ -67,7 +76,7 @@ def joined(*parts: Part) -> Part:
     for part in parts:
         arm = part.com - com
         inertia += part.inertia + part.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-    return Part(mass, com, inertia)
+    return Part(mass, com, inertia, tuple(shape for part in parts for shape in part.shapes))
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,6 +205,7 @@ def _body(
         ZERO if position is None else _vector(position),
         IDENTITY if rotation is None else _matrix(rotation),
         joints,
+        part.shapes,
     )
 
 

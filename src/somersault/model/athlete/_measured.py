@@ -16,7 +16,9 @@ from somersault._core.array import Array
 from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault.model._types import Model
 from somersault.model.athlete._athlete import Part, Physique, Shoulders, athlete_model, joined
+from somersault.model.athlete._figure import BALL, solid, stadium
 from somersault.model.athlete._measurements import read_measurements
+from somersault.model.shapes import Mesh
 
 Densities = Literal["Chandler", "Clauser", "Dempster"]
 
@@ -111,7 +113,7 @@ def _physique(human: Any, scale: float) -> Physique:
 
     def part(segment: Any) -> Part:
         com, inertia = segment.rel_center_of_mass[:, 0], segment.rel_inertia
-        return Part(scale * segment.mass, com, scale * inertia).turned(_AXES)
+        return Part(scale * segment.mass, com, scale * inertia, (_solid(segment),)).turned(_AXES)
 
     pelvis, thorax, chest = human.P, human.T, human.C
     return Physique(
@@ -127,3 +129,21 @@ def _physique(human: Any, scale: float) -> Physique:
         upper_arm_length=human.A1.length,
         thigh_length=human.J1.length,
     )
+
+
+def _solid(segment: Any) -> Mesh:
+    """Through all the cross-sections of a segment, in its own axes, rounded at a joint's ball."""
+    rings: list[Array] = []
+    radius = 0.0
+    for part in sorted(segment.solids, key=lambda part: part.pos[2, 0]):
+        low = float(part.pos[2, 0] - segment.pos[2, 0])
+        if not hasattr(part, "stads"):  # the top of the head
+            return solid(rings, above=part.height)
+        for level, section in zip((low, low + part.height), part.stads, strict=True):
+            along = 0 if section.alignment == "ML" else 1  # yeadon's axis 1 is the left
+            ring = stadium(section.radius, section.thickness, level, along)
+            radius = section.radius
+            if not rings or not np.allclose(ring, rings[-1]):
+                rings.append(ring)
+    limb = segment.label[0] in "AJK"
+    return solid(rings, above=BALL * radius if limb else 0.0)

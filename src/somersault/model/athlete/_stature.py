@@ -7,6 +7,7 @@ from typing import Literal
 
 import numpy as np
 
+from somersault._core.array import Array
 from somersault._core.checks import one_of
 from somersault._core.errors import SomersaultError
 from somersault.model._types import Model
@@ -19,6 +20,7 @@ from somersault.model.athlete._de_leva import (
     TABLES,
     Table,
 )
+from somersault.model.athlete._figure import ellipse, head, solid, tapered, trunk_half_axes
 
 
 def athlete(
@@ -71,12 +73,39 @@ def _physique(table: Table, height: float, mass: float) -> Physique:
         """A segment that runs down from a height over the point it is seen from."""
         heavy = mass * row[kind].mass / share  # the women's rows add up to 99.99 %
         com = (top - row[kind].com / 100 * length(kind)) * HEAD
-        return Part(heavy, com, np.diag(row[kind].inertia(heavy, length(kind))))
+        inertia = np.diag(row[kind].inertia(heavy, length(kind)))
+        limb = kind not in single
+        shapes = (tapered(row[kind], heavy, length(kind), top),) if limb else ()
+        return Part(heavy, com, inertia, shapes)
+
+    def half_axes(kind: str) -> Array:
+        return trunk_half_axes(row[kind], mass * row[kind].mass / share, length(kind))
 
     lower, middle, upper = (length(f"{k}_trunk") for k in ("lower", "middle", "upper"))
+    hips, waist, chest = (half_axes(f"{k}_trunk") for k in ("lower", "middle", "upper"))
+    ribs = (waist + chest) / 2
+    skull = head(row["head"], length("head"), upper + length("head"))
+    throat = np.full(2, 0.6 * skull.semi_axes[1])
+    pelvis = [
+        ellipse(0.75 * hips, 0.0),
+        ellipse(hips, 0.5 * lower),
+        ellipse(waist, lower + 0.5 * middle),
+        ellipse(ribs, lower + middle),
+    ]
+    torso = [
+        ellipse(ribs, 0.0),
+        ellipse(chest, 0.45 * upper),
+        ellipse(0.9 * chest, 0.8 * upper),
+        ellipse(throat, upper),
+        ellipse(throat, upper + 0.5 * skull.semi_axes[2]),
+    ]
     return Physique(
-        lower=joined(hung("lower_trunk", lower), hung("middle_trunk", lower + middle)),
-        upper=joined(hung("upper_trunk", upper), hung("head", upper + length("head"))),
+        lower=joined(hung("lower_trunk", lower), hung("middle_trunk", lower + middle)).looking(
+            solid(pelvis, below=0.06 * size)
+        ),
+        upper=joined(hung("upper_trunk", upper), hung("head", upper + length("head"))).looking(
+            solid(torso), skull
+        ),
         upper_arm=hung("upper_arm"),
         forearm=joined(hung("forearm"), hung("hand", -length("forearm"))),
         thigh=hung("thigh"),

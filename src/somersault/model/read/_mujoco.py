@@ -14,6 +14,8 @@ from somersault._core.errors import SomersaultError
 from somersault.attitude import matrix_from_quaternion
 from somersault.model._types import GROUND, Body, Joint, Matrix, Model, Vector
 from somersault.model._weld import merge_welded
+from somersault.model.read._mujoco_shapes import body_shapes
+from somersault.model.shapes import Shape
 
 _MOST_BYTES = 50 * 2**20
 
@@ -141,10 +143,13 @@ def _bodies(file: str, m: Any) -> tuple[list[Body], bool]:
         order = ours + [b for b in moving if b not in ours]
     still = {b: GROUND for b in range(m.nbody) if m.body_weldid[b] == 0}
     index = still | {b: k for k, b in enumerate(order)}
-    return [_body(m, b, index[int(m.body_parentid[b])], b in bases) for b in order], bool(bases)
+    shapes = body_shapes(m)
+    return [
+        _body(m, b, index[int(m.body_parentid[b])], b in bases, shapes.get(b, ())) for b in order
+    ], bool(bases)
 
 
-def _body(m: Any, b: int, parent: int, base: bool) -> Body:
+def _body(m: Any, b: int, parent: int, base: bool, shapes: tuple[Shape, ...]) -> Body:
     turn = matrix_from_quaternion(m.body_iquat[b])
     inertia = turn @ np.diag(m.body_inertia[b]) @ turn.T
     first = int(m.body_jntadr[b])
@@ -158,6 +163,7 @@ def _body(m: Any, b: int, parent: int, base: bool) -> Body:
         position=_vector(np.zeros(3) if base else m.body_pos[b]),
         rotation=_matrix(np.eye(3) if base else matrix_from_quaternion(m.body_quat[b])),
         joints=joints,
+        shapes=shapes,
     )
 
 
