@@ -27,8 +27,7 @@ import machine
 import numpy as np
 
 import somersault as so
-from somersault.engine._integrator import Integrator
-from somersault.engine._kernel import cores, use_threads
+from somersault.engine import Integrator, cores, use_threads
 from somersault.ensembles import _cluster, _store
 from somersault.ensembles._ensemble import STEPS, _chunk, carried_out, plan
 from somersault.ensembles._plan import Plan

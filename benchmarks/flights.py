@@ -27,9 +27,8 @@ from others import pinocchio_timers, state_of
 from scipy.integrate import solve_ivp
 
 from somersault.attitude import quaternion_conjugate, quaternion_product
-from somersault.engine import Kernel
-from somersault.engine._integrator import Solution
-from somersault.engine._kernel import threads as threads_here
+from somersault.engine import Kernel, Solution
+from somersault.engine import threads as threads_here
 from somersault.flight import Flight, JointTakeoff, Takeoff, fly
 from somersault.flight._course import Course
 from somersault.flight._start import Start, start

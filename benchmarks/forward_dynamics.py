@@ -23,7 +23,7 @@ from gymnast import gymnast
 from others import mujoco_timer, pinocchio_timers, state_of
 
 from somersault.dynamics import Equations
-from somersault.engine._kernel import threads as threads_here
+from somersault.engine import threads as threads_here
 from somersault.model import Model, load
 
 TARGETS = {"layout": 60.0, "gymnast": 30.0}

@@ -14,9 +14,8 @@ import casadi as ca
 import numpy as np
 
 from somersault.dynamics import Equations
-from somersault.engine import Kernel
-from somersault.engine._kernel import aligned, compiled
-from somersault.engine._llvm import LANES
+from somersault.engine import LANES, Kernel, compiled
+from somersault.engine._kernel import aligned
 
 _COUNTED = (ca.OP_ADD, ca.OP_SUB, ca.OP_MUL, ca.OP_SQ, ca.OP_TWICE, ca.OP_DIV, ca.OP_INV)
 _SINE_AND_COSINE = 38  # operations of one reduction and both polynomials, a multiply-add as two

@@ -29,7 +29,7 @@ from somersault.attitude import (
     quaternion_from_angles,
     quaternion_product,
 )
-from somersault.engine._kernel import threads as threads_here
+from somersault.engine import threads as threads_here
 from somersault.flight._start import Start, start
 from somersault.flight._system import system
 from somersault.flight._takeoff import kinds, plans

@@ -28,7 +28,7 @@ from scipy.optimize import differential_evolution
 
 import somersault as so
 from somersault.dynamics import Equations
-from somersault.engine._kernel import use_threads
+from somersault.engine import use_threads
 from somersault.ensembles._plan import Plan
 
 OUT = Path(__file__).parents[1] / "src/somersault/thesis/ch6/rudi.json"

@@ -13,7 +13,7 @@ import xarray as xr
 import zarr
 
 import somersault as so
-from somersault.engine._kernel import processor
+from somersault.engine import processor
 from somersault.ensembles import _store
 from somersault.ensembles._ensemble import STEPS, carried_out, plan
 from somersault.ensembles._plan import Plan

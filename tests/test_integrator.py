@@ -13,9 +13,8 @@ import mpmath
 import numpy as np
 import pytest
 
+from somersault.engine import STATUS, Integrator, Solution, use_threads
 from somersault.engine import _dop853 as table
-from somersault.engine import _integrator
-from somersault.engine._integrator import STATUS, Integrator, Solution
 
 ENDED = {name: code for code, name in STATUS.items()}
 
@@ -368,12 +367,10 @@ def whole() -> Solution:
 
 @pytest.mark.parametrize("count", [1, 7, 8, 9, 361])
 @pytest.mark.parametrize("threads", [1, 2])
-def test_batches_and_threads_do_not_matter(
-    count: int, threads: int, whole: Solution, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_batches_and_threads_do_not_matter(count: int, threads: int, whole: Solution) -> None:
     """Bit for bit; with events, whose search goes on until the last lane has found its own."""
-    monkeypatch.setattr(_integrator, "threads", lambda: threads)
-    same(flown(count), whole, count)
+    with use_threads(threads):
+        same(flown(count), whole, count)
 
 
 def test_neighbours_do_not_matter(whole: Solution) -> None:

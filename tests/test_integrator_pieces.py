@@ -8,8 +8,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from somersault.engine import _integrator
-from somersault.engine._integrator import STATUS, Integrator, Pieces
+from somersault.engine import STATUS, Integrator, Pieces, use_threads
 
 rng = np.random.default_rng(11)
 
@@ -109,13 +108,13 @@ def test_a_start_on_the_gauge_is_no_event() -> None:
 
 
 @pytest.mark.parametrize("threads", [1, 2, 5])
-def test_the_queue_gives_every_flight_once(threads: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_queue_gives_every_flight_once(threads: int) -> None:
     """Flights of very different length, on more threads than there are lanes to fill."""
-    monkeypatch.setattr(_integrator, "threads", lambda: threads)
     start, still, ends, numbers = some(301, 5)
     ends *= np.exp(rng.normal(size=(301, 1)))
     pieces = Pieces(ends, numbers)
-    found = ramp().solve(start, still, np.array([100.0]), 1e-12, pieces=pieces)
+    with use_threads(threads):
+        found = ramp().solve(start, still, np.array([100.0]), 1e-12, pieces=pieces)
     assert np.array_equal(found.end, ends[:, -1])
     alone = [
         ramp().solve(

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from somersault.dynamics import Equations
-from somersault.engine import Kernel, _kernel
+from somersault.engine import Kernel, _kernel, use_threads
 from somersault.model import load
 
 
@@ -145,13 +145,11 @@ def test_bits_do_not_depend_on_company(furrer: Kernel, samples: np.ndarray) -> N
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3])
-def test_bits_do_not_depend_on_threads(
-    furrer: Kernel, samples: np.ndarray, threads: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_bits_do_not_depend_on_threads(furrer: Kernel, samples: np.ndarray, threads: int) -> None:
     assert len(samples) / 8 > _kernel._WORTH_A_THREAD
     whole = furrer(samples)
-    monkeypatch.setattr(_kernel, "threads", lambda: threads)
-    np.testing.assert_array_equal(furrer(samples), whole)
+    with use_threads(threads):
+        np.testing.assert_array_equal(furrer(samples), whole)
 
 
 def test_leading_dimensions_are_kept(furrer: Kernel, samples: np.ndarray) -> None:

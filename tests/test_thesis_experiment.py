@@ -49,13 +49,13 @@ def test_it_flies_in_its_plane_as_a_stone_does() -> None:
     flight = fly(made.doll, made.release.takeoff, made.time(), gravity=(0, 0, -9.81), samples=2)
     fallen = flight.dataset["centre_of_mass"].values[-1]
     assert made.release.centre[2] + fallen[2] == pytest.approx(launcher.CATCH, abs=1e-12)
-    assert made.path(np.array([made.time()]))[0, 2] == pytest.approx(launcher.CATCH, abs=1e-12)
+    assert made.path.at([made.time()])[0, 2] == pytest.approx(launcher.CATCH, abs=1e-12)
 
 
 def test_a_larger_clamp_throws_higher_as_reckoned_by_hand() -> None:
     made = launcher.Launch(0.27)
     fit = launches_of_one._fit(0.27)
-    assert made.climb == pytest.approx(fit.climb, rel=1e-4)
+    assert made.path.climb == pytest.approx(fit.climb, rel=1e-4)
     assert made.out == pytest.approx(launch().out + 0.05, abs=1e-6)
 
 
@@ -118,7 +118,7 @@ def test_a_launch_is_the_flight_of_its_draws() -> None:
         nominal, tilt=drawn["tilted"], twist=drawn["twisted"], tilt_rate=drawn["tilting"],
         twist_rate=drawn["twisting"],
     )  # fmt: skip
-    flight = fly(WEIGHTED, takeoff, launcher.flight_time(), until="quarter twist", samples=2)
+    flight = fly(WEIGHTED, takeoff, launch().time(), until="quarter twist", samples=2)
     found = experiment.sprung([2.1], SCATTER, 8, seed=3)
     turns = (flight.landing.somersault - RELEASE) / (2 * np.pi)
     assert found.somersaults[0, 7] == pytest.approx(turns, abs=1e-3)
@@ -129,7 +129,7 @@ def test_no_scatter_no_failure() -> None:
     calm = Scatter(1e-9, 1e-9, 1e-9, 1e-9)
     found = experiment.sprung([BEST, 1.18], calm, 8)
     assert found.stable.all()
-    turns = launcher.flight_time() * SPIN / (2 * np.pi)
+    turns = launch().time() * SPIN / (2 * np.pi)
     assert found.somersaults == pytest.approx(turns, abs=1e-4)
 
 

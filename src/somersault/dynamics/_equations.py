@@ -26,7 +26,7 @@ from somersault.dynamics._motion import place
 from somersault.dynamics._newton_euler import inverse_dynamics, momentum
 from somersault.dynamics._tree import Tree, parameter_names, parameter_value, tree
 from somersault.dynamics._vector import Mat, Vec, cross, matmul, scale, tilde, transpose, vadd, vsub
-from somersault.engine._kernel import Kernel
+from somersault.engine import Kernel
 from somersault.model import Model, load
 
 

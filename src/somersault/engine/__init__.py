@@ -1,16 +1,10 @@
 """Compiled functions over many samples, and integrations of many states: it knows no bodies."""
 
 from somersault.engine._integrator import MOST_STEPS, STATUS, Integrator, Pieces, Solution
-from somersault.engine._kernel import (
-    LANES,
-    Kernel,
-    compiled,
-    cores,
-    pool,
-    processor,
-    threads,
-    use_threads,
-)
+from somersault.engine._kernel import Kernel
+from somersault.engine._machine import compiled, processor
+from somersault.engine._threads import cores, pool, threads, use_threads
+from somersault.engine._vectors import LANES
 
 __all__ = [
     "LANES",

@@ -11,15 +11,25 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault.engine import _lanes
-from somersault.engine import _step as _l
-from somersault.engine._kernel import compiled, pool, threads
-from somersault.engine._llvm import LANES, llvm_function
+from somersault.engine._expression import expression
+from somersault.engine._machine import compiled
+from somersault.engine._step import (
+    BROKEN,
+    EVENT,
+    FLYING,
+    TOO_MANY_STEPS,
+    Rows,
+    renew,
+    step,
+)  # fmt: skip
+from somersault.engine._threads import pool, threads
+from somersault.engine._vectors import LANES, module
 
 STATUS = {
-    _l.FLYING: "duration",
-    _l.EVENT: "event",
-    _l.TOO_MANY_STEPS: "too many steps",
-    _l.BROKEN: "not finite",
+    FLYING: "duration",
+    EVENT: "event",
+    TOO_MANY_STEPS: "too many steps",
+    BROKEN: "not finite",
 }
 MOST_STEPS = 1_000_000
 _FIRST_STEP = 1e-3  # s; what it is costs a step or two
@@ -76,7 +86,7 @@ class Integrator:
         self.changing = changing
         self._slope, self._gauge, self._watch, self._longest = slope, gauge, watch, longest
         watched = 0 if watch is None else watch.nnz_out(0)
-        self._rows = _l.Rows(self.state, self.inputs - self.state - 1, watched)
+        self._rows = Rows(self.state, self.inputs - self.state - 1, watched)
         self.outputs: int = self._rows.outputs
 
     @cached_property
@@ -87,8 +97,10 @@ class Integrator:
             "watch": self._watch,
             "longest": self._longest,
         }
-        text = "".join(llvm_function(f, name) for name, f in functions.items() if f is not None)
-        return compiled(_lanes.module(text, self._rows, self.changing, self._gauge is not None))
+        texts = [expression(f, name) for name, f in functions.items() if f is not None]
+        event = self._gauge is not None
+        texts += [step(self._rows, event), renew(self._rows, event)]
+        return compiled(_lanes.fly(self._rows, self.changing), module(texts))
 
     @cached_property
     def _fly(self):
@@ -118,8 +130,8 @@ class Integrator:
         count, outputs = len(start), self.outputs
         samples = np.ascontiguousarray(np.atleast_2d(samples), float)
         if pieces is None:
-            last = samples[:, -1] if end is None else end
-            pieces = Pieces(np.reshape(last, (-1, 1)), np.empty((1, 1, 0)))
+            until = samples[:, -1] if end is None else end
+            pieces = Pieces(np.reshape(until, (-1, 1)), np.empty((1, 1, 0)))
         ends = np.ascontiguousarray(np.minimum(pieces.ends, samples[:, -1:]))
         table = np.ascontiguousarray(pieces.parameters, float)
         still = np.ascontiguousarray(parameters, float)
@@ -128,38 +140,30 @@ class Integrator:
         if (table.shape[2], still.shape[1], first.shape[1]) != (self.changing, lasting, outputs):
             raise ValueError("not the parameters, or not the states, of these equations")
         out = np.empty((count, samples.shape[1], outputs))
-        told = np.empty((count, outputs + _lanes.LAST_MORE))
+        last = np.empty((count, outputs + _lanes.LAST_MORE))
         following = np.zeros(1, np.int64)
-        job = np.empty(_lanes.JOB, np.int64)
-        for place, array in (
-            (_lanes.FIRST, first), (_lanes.STILL, still), (_lanes.TABLE, table),
-            (_lanes.ENDS, ends), (_lanes.SAMPLES, samples), (_lanes.OUT, out),
-            (_lanes.LAST, told), (_lanes.NEXT, following),
+        job = _lanes.Job(
+            first=first.ctypes.data, out=out.ctypes.data, last=last.ctypes.data,
+            next=following.ctypes.data, count=count, sample_count=samples.shape[1],
+            pieces=ends.shape[1], tolerance=tolerance, most_steps=most_steps,
+            first_step=first_step,
+        )  # fmt: skip
+        for name, array in (
+            ("still", still), ("table", table), ("ends", ends), ("samples", samples),
         ):  # fmt: skip
-            job[place] = array.ctypes.data
-        for place, array in (
-            (_lanes.STILL_BY, still), (_lanes.TABLE_BY, table), (_lanes.ENDS_BY, ends),
-            (_lanes.SAMPLES_BY, samples),
-        ):  # fmt: skip
-            job[place] = array[0].size if len(array) > 1 else 0
-        job[_lanes.COUNT], job[_lanes.SAMPLE_COUNT] = count, samples.shape[1]
-        job[_lanes.PIECES] = ends.shape[1]
-        for place, value in (
-            (_lanes.TOLERANCE, tolerance), (_lanes.LIMIT, most_steps),
-            (_lanes.FIRST_STEP, first_step),
-        ):  # fmt: skip
-            job.view(float)[place] = value
+            setattr(job, name, array.ctypes.data)
+            setattr(job, f"{name}_by", array[0].size if len(array) > 1 else 0)
         self._run(job, count)
         n = self.state
         return Solution(
-            out[..., :n], told[:, outputs], told[:, :n], told[:, outputs + 1],
-            told[:, outputs + 2].astype(int), out[..., n:], told[:, n:outputs],
+            out[..., :n], last[:, outputs], last[:, :n], last[:, outputs + 1],
+            last[:, outputs + 2].astype(int), out[..., n:], last[:, n:outputs],
         )  # fmt: skip
 
-    def _run(self, job: Array, count: int) -> None:
+    def _run(self, job: _lanes.Job, count: int) -> None:
         """Fly a job on as many threads as there is work for."""
         helpers = min(threads(), -(-count // LANES))
         if helpers <= 1:
-            self._fly(job.ctypes.data)
+            self._fly(ctypes.byref(job))
         else:
-            list(pool().map(self._fly, [job.ctypes.data] * helpers))
+            list(pool().map(self._fly, [ctypes.byref(job)] * helpers))

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import ctypes
 import math
-import os
-from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
-from contextvars import ContextVar
-from functools import cache, cached_property
+from functools import cached_property
 from itertools import pairwise
 
 import casadi as ca
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.engine._llvm import LANES, llvm_module
+from somersault.engine._expression import expression
+from somersault.engine._flow import INTEGER, POINTER, Code, integer
+from somersault.engine._machine import compiled
+from somersault.engine._threads import pool, threads
+from somersault.engine._vectors import LANES, module
 
 _ALIGN = 64  # bytes, the width of a block row
 _WORTH_A_THREAD = 256  # blocks below which a second thread costs more than it gives
@@ -37,7 +36,8 @@ class Kernel:
 
     @cached_property
     def _compiled(self):  # the engine must outlive the addresses taken from it
-        return compiled(llvm_module(self._function, "kernel"))
+        many = _many(self.inputs, self.outputs)
+        return compiled(many, module([expression(self._function, "kernel")]))
 
     @cached_property
     def address(self) -> int:
@@ -103,71 +103,14 @@ def aligned(shape: tuple[int, ...]) -> Array:
     return raw[start : start + count].reshape(shape)
 
 
-_ROUNDING = ("fma", "fma4", "avx2", "avx512f", "neon", "sve")  # as LLVM calls them
-_chosen: ContextVar[int | None] = ContextVar("threads", default=None)
-
-
-def threads() -> int:
-    """How many threads compiled code uses: those chosen, or one a core."""
-    return _chosen.get() or cores()
-
-
-@cache
-def cores() -> int:
-    """Cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return max(1, len(os.sched_getaffinity(0)))
-    return os.cpu_count() or 1
-
-
-@contextmanager
-def use_threads(count: int | None) -> Iterator[None]:
-    """Within the block compiled code uses so many threads (None: one a core)."""
-    before = _chosen.set(count)
-    try:
-        yield
-    finally:
-        _chosen.reset(before)
-
-
-def pool() -> ThreadPoolExecutor:
-    return _pool(threads())
-
-
-@cache
-def _pool(count: int) -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(count, thread_name_prefix="somersault")
-
-
-@cache
-def processor() -> str:
-    """The kind of processor that code is compiled for here, with what decides how it rounds: which
-    multiply-adds are fused, and how wide vectors are."""
-    import llvmlite.binding as llvm
-
-    features = llvm.get_host_cpu_features()
-    return "+".join([llvm.get_host_cpu_name(), *(f for f in _ROUNDING if features.get(f))])
-
-
-def _target_machine():
-    import llvmlite.binding as llvm
-
-    llvm.initialize_native_target()
-    llvm.initialize_native_asmprinter()
-    target = llvm.Target.from_default_triple()
-    return target.create_target_machine(
-        cpu=llvm.get_host_cpu_name(),
-        features=llvm.get_host_cpu_features().flatten(),
-        opt=2,
-        jit=True,
-    )
-
-
-def compiled(text: str):
-    import llvmlite.binding as llvm
-
-    machine = _target_machine()
-    module = llvm.parse_assembly(text)
-    engine = llvm.create_mcjit_compiler(module, machine)
-    engine.finalize_object()
-    return engine
+def _many(inputs: int, outputs: int) -> str:
+    """LLVM text of kernel_many(x, y, blocks), which calls @kernel for one block after another."""
+    code = Code()
+    kernel = code.declared("kernel", [POINTER, POINTER])
+    flow, (x, y, blocks) = code.written("kernel_many", [POINTER, POINTER, INTEGER])
+    with flow.counted(integer(0), blocks) as block:
+        x_block = flow.place(x, flow.mul(block, integer(inputs * LANES)))
+        y_block = flow.place(y, flow.mul(block, integer(outputs * LANES)))
+        flow.call(kernel, [x_block, y_block])
+    flow.ret_void()
+    return str(code)

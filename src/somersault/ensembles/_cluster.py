@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError, SomersaultWarning
-from somersault.engine._kernel import cores, processor
+from somersault.engine import cores, processor
 from somersault.ensembles import _run, _store
 from somersault.ensembles._plan import Plan, engines
 from somersault.ensembles._store import Layout

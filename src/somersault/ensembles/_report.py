@@ -12,8 +12,7 @@ from somersault._core.array import Array
 from somersault._core.checks import by_name, name_list, whole_number
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
-from somersault.engine import Kernel
-from somersault.engine._integrator import STATUS, Solution
+from somersault.engine import STATUS, Kernel, Solution
 from somersault.flight._course import Course
 from somersault.flight._system import System
 from somersault.flight._watch import ANGLES, RATES, VELOCITIES, values, watched

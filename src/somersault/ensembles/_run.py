@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from itertools import islice
 
 from somersault._core.array import Array
-from somersault.engine._kernel import cores, use_threads
+from somersault.engine import cores, use_threads
 from somersault.ensembles._plan import Plan
 from somersault.ensembles._store import Layout
 

@@ -25,7 +25,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault._core.files import umask
-from somersault.engine._kernel import processor
+from somersault.engine import processor
 from somersault.ensembles._plan import SAMPLE, Plan
 from somersault.ensembles._report import ENDINGS, Variable, variables
 

@@ -1,5 +1,6 @@
 """Takeoff, flight, landing."""
 
+from somersault.flight._ballistic import BallisticPath
 from somersault.flight._compliance import compliant, off_nominal, with_momentum
 from somersault.flight._deviation import deviated_flight
 from somersault.flight._flight import Flight, Landing
@@ -14,10 +15,26 @@ from somersault.flight._maneuvers import (
     twist_time,
 )
 from somersault.flight._prescribed import prescribed
-from somersault.flight._swing import Release, Stop, Swing, released, swing
+from somersault.flight._principal import (
+    principal_attitude,
+    principal_axes_along,
+    rigid_continuation,
+)
+from somersault.flight._swing import (
+    GRAVITY,
+    Release,
+    Stop,
+    Swing,
+    height_energy,
+    released,
+    swing,
+)
 from somersault.flight._takeoff import JointTakeoff, Takeoff
+from somersault.flight._work import joint_power, joint_work
 
 __all__ = [
+    "GRAVITY",
+    "BallisticPath",
     "Flight",
     "JointTakeoff",
     "Landing",
@@ -31,11 +48,17 @@ __all__ = [
     "compliant",
     "deviated_flight",
     "fly",
+    "height_energy",
     "hula",
     "inertia_change",
+    "joint_power",
+    "joint_work",
     "off_nominal",
     "prescribed",
+    "principal_attitude",
+    "principal_axes_along",
     "released",
+    "rigid_continuation",
     "swing",
     "torque_twist",
     "twist_time",

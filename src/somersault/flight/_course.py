@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.engine._integrator import MOST_STEPS, Pieces, Solution
+from somersault.engine import MOST_STEPS, Pieces, Solution
 from somersault.flight._columns import Name, Numbers, path, row
 from somersault.flight._start import Starts, momentum
 from somersault.flight._system import System

@@ -13,7 +13,7 @@ from somersault._core.checks import whole_number
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number, numbers
 from somersault.attitude import Axes, angles_from_quaternion
-from somersault.engine._integrator import STATUS
+from somersault.engine import STATUS
 from somersault.flight._flight import Flight
 from somersault.flight._start import Start, start
 from somersault.flight._system import System, system

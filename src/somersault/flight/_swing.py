@@ -21,7 +21,7 @@ from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number, numbers
 from somersault.attitude import quaternion_from_matrix
 from somersault.dynamics import Equations
-from somersault.engine._integrator import STATUS, Integrator
+from somersault.engine import STATUS, Integrator
 from somersault.flight._takeoff import JointTakeoff, Takeoff
 from somersault.history import summary
 from somersault.model import Joint, Model, body_frames, body_velocities, centre_of_mass

@@ -16,8 +16,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.dynamics import Equations
-from somersault.engine import Kernel
-from somersault.engine._integrator import Integrator
+from somersault.engine import Integrator, Kernel
 from somersault.flight._symbols import Symbols, moves_freely
 from somersault.flight._takeoff import Kind
 from somersault.flight._watch import VELOCITIES, longest, watch

@@ -8,20 +8,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from somersault import rigid
-from somersault.flight import Flight, Takeoff
-from somersault.flight._maneuvers import (
+from somersault.flight import (
+    Flight,
     Maneuver,
+    Takeoff,
     arm_tilt,
     cat_turn,
     inertia_change,
+    joint_work,
+    principal_attitude,
+    rigid_continuation,
     torque_twist,
     twist_time,
 )
-from somersault.stability._spin import principal
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result
-from somersault.thesis.ch4._tilt_and_twist_paths import principal_attitude
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -34,26 +35,11 @@ _QUICK = (0.5, 0.1)  # times of the cat's turn, over the first
 # ------------------------------------------------------------------------- what is measured
 
 
-def work(maneuver: Maneuver, nodes: int = 40) -> tuple[float, float]:
-    """Change of kinetic energy, and ∫ Σ torque · rate dt at the joints, J.
-
-    By Gauss's rule between the knots of the joints' paths.
-    """
-    knots = np.concatenate([path.knots for path in maneuver.motion.paths.values()])
-    knots = np.unique(np.clip(np.append(knots, (0.0, maneuver.duration)), 0.0, maneuver.duration))
-    x, weights = np.polynomial.legendre.leggauss(nodes)
-    half = np.diff(knots)[:, None] / 2
-    times = (knots[:-1, None] + half * (1 + x)).ravel()
-    flown = maneuver.fly(accuracy=SHARP, samples=[0.0, *times.tolist(), maneuver.duration])
-    power = (flown.joint_torques.values * flown.dataset["joint_rate"].values).sum(1)
+def work(maneuver: Maneuver, samples: int = 8001) -> tuple[float, float]:
+    """Change of kinetic energy, and the work done at the joints, J."""
+    flown = maneuver.fly(accuracy=SHARP, samples=samples)
     energy = flown.kinetic_energy
-    return float(energy[-1] - energy[0]), float((half * weights).ravel() @ power[1:-1])
-
-
-def locked(flight: Flight) -> rigid.RigidMotion:
-    """The body as it is at the end, its joints held: an exact motion about its principal axes."""
-    axes = principal(flight.system.equations.inertia(flight.dataset["joint_angle"].values[-1]))
-    return rigid.RigidMotion(axes.inertias, flight.angular_velocity[-1] @ axes.axes)
+    return float(energy[-1] - energy[0]), float(joint_work(flown)[-1].sum())
 
 
 def tilted(tilt: float, pose: str = "layout", h: float = 60.0) -> Maneuver:
@@ -194,7 +180,7 @@ def _cat_claims() -> list[Claim]:
 def _tilt_claims() -> list[Claim]:
     on = arm_tilt(twists=None, duration=0.3)
     flown = on.fly(accuracy=SHARP)
-    body = locked(flown)
+    body = rigid_continuation(flown)
     number, rate = rotation_number(on, 0.3)
     exact, exact_rate = body.twists_per_somersault, body.mean_rates[1]
     tilt = np.degrees(principal_attitude(flown)[0])

@@ -7,11 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from somersault._core.array import Array
 from somersault.attitude import matrix_from_quaternion
-from somersault.flight import Flight, JointTakeoff, Takeoff, fly
+from somersault.flight import Flight, JointTakeoff, Takeoff, fly, principal_axes_along
 from somersault.model import load
-from somersault.stability._spin import principal
 from somersault.thesis._claims import statement
 from somersault.thesis._entries import Result
 from somersault.thesis.ch4._furrer import MODEL
@@ -21,11 +19,6 @@ if TYPE_CHECKING:
 
 _RAISED = 2.6  # rad: the left arm of the figure on the right
 _SECONDS = 0.5  # in which it is raised; only the angles matter
-
-
-def principal_axes(flight: Flight) -> Array:
-    """Principal axes of the posed body at each sample, columns in the base's axes (…, 3, 3)."""
-    return principal(flight.system.equations.inertia(flight.dataset["joint_angle"].values)).axes
 
 
 @cache
@@ -70,7 +63,7 @@ def fig_4_13() -> Result:
     """An asymmetric arm turns the body, and the principal axes in the body."""
     flown = raised()
     body = float(flown.landing.tilt)
-    axes = principal_axes(flown)
+    axes = principal_axes_along(flown).axes
     incline = float(np.arctan2(axes[-1, 2, 1], axes[-1, 1, 1]))
     whole = float(body + incline)
     where = "§4.4.1, Figure 4-13"

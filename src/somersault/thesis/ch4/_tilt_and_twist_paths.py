@@ -9,11 +9,9 @@ import numpy as np
 from somersault import rigid
 from somersault import stability as st
 from somersault._core.array import Array
-from somersault.attitude import matrix_from_quaternion
-from somersault.flight import Flight
+from somersault.flight import Flight, principal_attitude
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result
-from somersault.thesis.ch4._arm_raised import principal_axes
 from somersault.thesis.ch4._furrer import MODEL, NOMINAL
 from somersault.thesis.ch4._layout_takeoff import SPIN, passive
 from somersault.thesis.ch4._rigid_and_passive import STIFFNESS
@@ -23,16 +21,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _DOT = 0.01  # s between the dots of figure 4-14
-
-
-def principal_attitude(flight: Flight) -> tuple[Array, Array]:
-    """Tilt and twist of the principal axes about the angular momentum (time,), rad."""
-    turn = matrix_from_quaternion(flight.dataset["quaternion"].values) @ principal_axes(flight)
-    h = flight.start.momentum
-    return rigid.tilt_and_twist(np.einsum("tij,i->tj", turn, h / np.linalg.norm(h)))
-
-
-# --------------------------------------------------------------------- figures 4-14 and 4-15
 
 
 def _rigid_paths(starts: tuple[tuple[float, float], ...], seconds: float) -> list[Array]:

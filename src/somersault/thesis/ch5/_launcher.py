@@ -17,18 +17,19 @@ import numpy as np
 from somersault import stability as st
 from somersault._core.array import Array
 from somersault.dynamics import Equations
-from somersault.flight import JointTakeoff, Takeoff
-from somersault.flight._swing import (
+from somersault.flight import (
     GRAVITY,
+    BallisticPath,
+    JointTakeoff,
     Release,
     Stop,
     Swing,
+    Takeoff,
     height_energy,
     released,
     swing,
 )
-from somersault.model import GROUND, Body, Joint, Model, load
-from somersault.model._mounted import Mount, mounted
+from somersault.model import GROUND, Body, Joint, Model, Mount, load, mounted
 from somersault.thesis.ch5._doll import BEST, HEIGHT, WEIGHTED, shoulder_inertia
 
 SPIN = 16.6  # rad/s, "the average somersault rate" (§5.5)
@@ -142,28 +143,18 @@ class Launch:
         """From the bar to the doll's centre of mass, m."""
         return float(np.linalg.norm(self.release.centre - [0.0, 0.0, BAR_HEIGHT]))
 
-    @property
-    def climb(self) -> float:
-        """Upward velocity at the release, m/s."""
-        return float(self.release.takeoff.velocity[2])
-
-    @property
-    def apex(self) -> float:
-        """Greatest height of the centre of mass, m."""
-        return float(self.release.centre[2]) + self.climb**2 / (2 * G)
+    @cached_property
+    def path(self) -> BallisticPath:
+        """Where the centre of mass goes after the release."""
+        return BallisticPath(self.release.centre, self.release.takeoff.velocity, GRAVITY)
 
     def time(self, catch: float = CATCH) -> float:
         """From release until the centre of mass comes down to a height, s."""
-        return (self.climb + float(np.sqrt(2 * G * (self.apex - catch)))) / G
+        return self.path.time_to(catch)
 
     def somersaults(self, catch: float = CATCH) -> float:
         """Of the spin at release until then: a stable doll's somersault rate stays about it."""
         return float(self.spin[1]) * self.time(catch) / (2 * np.pi)
-
-    def path(self, times: Array) -> Array:
-        """The centre of mass, (T, 3), m."""
-        v = np.array(self.release.takeoff.velocity)
-        return self.release.centre + times[:, None] * v + 0.5 * times[:, None] ** 2 * GRAVITY
 
 
 @cache
@@ -178,11 +169,6 @@ def takeoff(joints: Mapping[str, JointTakeoff]) -> Takeoff:
     The swing is in one plane, so tilt, twist and their rates are zero.
     """
     return Takeoff(somersault=RELEASE, spin=float(launch().spin[1]), joints=joints)
-
-
-def flight_time() -> float:
-    """From release to the catch, s."""
-    return launch().time()
 
 
 def radius() -> float:

@@ -10,8 +10,7 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault.dynamics import Equations
-from somersault.flight import fly
-from somersault.flight._swing import GRAVITY
+from somersault.flight import GRAVITY, BallisticPath, fly
 from somersault.thesis._claims import Claim, number, statement
 from somersault.thesis._entries import Result, Table
 from somersault.thesis.ch5 import _launcher as launcher
@@ -51,10 +50,10 @@ def sec_5_4() -> Result:
         "about its own centre of mass.",
         f"The launcher's dimensions are ours (docs/doll.md). Its spring, tensioned for {SPIN} "
         f"rad/s, gives {wound:.1f} N m wound one turn back and {left:.1f} N m at the release, "
-        f"{made.swing.times[-1]:.2f} s later. The doll leaves upwards at {made.climb:.2f} m/s and "
-        f"at {-made.release.takeoff.velocity[0]:.2f} m/s away from the bar: at Φ = π/2 exactly it "
-        f"would come down onto the clamp, so Φ = {RELEASE} rad is taken. A rod bears up to "
-        f"{made.rod_torque.max():.2f} N m about the shoulder before the release, and what the "
+        f"{made.swing.times[-1]:.2f} s later. The doll leaves upwards at {made.path.climb:.2f} "
+        f"m/s and at {-made.release.takeoff.velocity[0]:.2f} m/s away from the bar: at Φ = π/2 "
+        f"exactly it would come down onto the clamp, so Φ = {RELEASE} rad is taken. A rod bears up "
+        f"to {made.rod_torque.max():.2f} N m about the shoulder before the release, and what the "
         "pretension is wrong by after it.",
         (*_flight_claims(made), *_rod_claims(made), _carried(made)),
         _draw(made),
@@ -86,8 +85,10 @@ def _fit(reach: float) -> _Fit:
     out = launch().out + reach - launcher.REACH
     climb = SPIN * out * np.sin(RELEASE)
     apex = CEILING - _MARGIN - launcher.radius()
-    bar = apex - climb**2 / (2 * launcher.G) + out * np.cos(RELEASE)
-    times = [(climb + np.sqrt(2 * launcher.G * (apex - catch))) / launcher.G for catch in _CATCHES]
+    height = apex - climb**2 / (2 * launcher.G)
+    bar = height + out * np.cos(RELEASE)
+    path = BallisticPath((0.0, 0.0, height), (0.0, 0.0, climb), GRAVITY)
+    times = [path.time_to(catch) for catch in _CATCHES]
     return _Fit(reach, climb, bar, tuple(SPIN * time / (2 * np.pi) for time in times))
 
 
@@ -101,12 +102,12 @@ def _flight_claims(made: Launch) -> list[Claim]:
     fit = [f for f in map(_fit, _REACHES) if _BARS[0] <= f.bar <= _BARS[1]]
     few, many = (pick(t for f in fit for t in f.somersaults) for pick in (min, max))
     times = np.linspace(0, made.time(), 400)
-    top = float(made.path(times)[:, 2].max()) + launcher.radius()
+    top = float(made.path.at(times)[:, 2].max()) + launcher.radius()
     angles = np.linspace(RELEASE - 0.6, RELEASE + 0.6, 121)
-    climbs = made.climb / np.sin(RELEASE) * np.sin(angles)
+    climbs = made.path.climb / np.sin(RELEASE) * np.sin(angles)
     best = float(angles[np.argmax(climbs)])
     wound = made.spring_torques[0]
-    beside = -float(made.path(times[-1:])[0, 0])
+    beside = -float(made.path.at(times[-1:])[0, 0])
     where = "§5.2.2, §5.5"
     return [
         number(
@@ -305,11 +306,11 @@ def _draw_laboratory(ax: object, made: Launch) -> None:
 
     assert isinstance(ax, Axes)
     times = np.linspace(0, made.time(), 200)
-    path = made.path(times)
+    path = made.path.at(times)
     ax.plot(path[:, 0], path[:, 2], color=look.BLUE, lw=1.2, ls=":")
     for k, time in enumerate(np.arange(0, made.time(), 2 * np.pi / SPIN / 4)):
         angle = RELEASE + SPIN * time
-        centre = made.path(np.array([time]))[0]
+        centre = made.path.at([time])[0]
         _stick(ax, centre, angle, look.BLUE if k else look.VERMILION)
     for angle in np.arange(-2.4, RELEASE - 0.2, 0.6):
         centre = _on_bar(made, angle)

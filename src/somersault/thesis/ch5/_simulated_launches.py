@@ -131,7 +131,7 @@ def _flown(
     flown = ensemble(
         WEIGHTED,
         launcher.takeoff({"shoulder": arm}),
-        launcher.flight_time() if duration is None else duration,
+        launch().time() if duration is None else duration,
         vary,
         size=count,
         seed=seed,

@@ -10,13 +10,13 @@ import numpy as np
 
 from somersault import rigid
 from somersault._core.array import Array
-from somersault.flight._maneuvers import (
+from somersault.flight import (
     hula,
+    principal_attitude,
+    rigid_continuation,
 )
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result, Table
-from somersault.thesis.ch1._techniques import locked
-from somersault.thesis.ch4._tilt_and_twist_paths import principal_attitude
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -69,7 +69,7 @@ def extensions(arms: str = ABDUCTED, **style: float) -> Extensions:
         turned = np.interp(middle, flown.times, np.unwrap(twist))
         if hold == 0.0:
             swung = float(np.interp(_BEGIN + _QUARTER, flown.times, tilt))
-        after = locked(flown)
+        after = rigid_continuation(flown)
         rows.append((abs(turned) / (2 * np.pi), mean_tilt(after), after.twists_per_somersault))
     moment, final, twists = np.array(rows).T
     return Extensions(moment, final, swung, twists)

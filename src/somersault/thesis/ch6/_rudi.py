@@ -9,7 +9,6 @@ asked of either.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
@@ -18,8 +17,7 @@ from typing import Any, Literal
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.ensembles import Report, Vary, ensemble
-from somersault.ensembles._summary import failed
+from somersault.ensembles import failed, landing_derivatives, landing_map
 from somersault.flight import Flight, JointTakeoff, Takeoff, compliant, fly, with_momentum
 from somersault.model import load
 
@@ -91,12 +89,6 @@ def strategy(
     return compliant(MODEL, nominal_takeoff(kept), frequency, pose=at, tape=tape)
 
 
-def target(flight: Flight) -> dict[str, float]:
-    """The attitude and the joint angles that a flight lands with."""
-    end = flight.landing
-    return {"somersault": end.somersault, "tilt": end.tilt, "twist": end.twist, **end.joints}
-
-
 @dataclass(frozen=True, eq=False)
 class Landings:
     """Landing errors e (tilt, twist) over a grid of starts, NaN where a flight failed."""
@@ -112,28 +104,17 @@ class Landings:
 
 
 def landings(
-    takeoff: Takeoff, points: int = 21, wanted: Mapping[str, float] | None = None,
-    kept: Kept = "rudi",
-) -> Landings:  # fmt: skip
+    takeoff: Takeoff, points: int = 21, against: Flight | None = None, kept: Kept = "rudi"
+) -> Landings:
     """Flights from a grid of tilt and twist at takeoff, and the error e of section 6.3.2."""
-    grid = {"from": -SPAN, "to": SPAN, "count": points}
-    told = Report(("landing_error",), target=wanted or target(nominal(kept)))
-    found = ensemble(
-        MODEL,
-        takeoff,
-        landing_time(kept),
-        {
-            "takeoff_tilt": Vary("takeoff.tilt", values=grid, unit="rad"),
-            "takeoff_twist": Vary("takeoff.twist", values=grid, unit="rad"),
-        },
-        report=told,
-        accuracy=_ACCURACY,
-        steps=_STEPS,
-    ).dataset
+    flown = landing_map(
+        MODEL, takeoff, landing_time(kept), against or nominal(kept), span=SPAN, points=points,
+        accuracy=_ACCURACY, steps=_STEPS,
+    ).dataset  # fmt: skip
     return Landings(
-        found["takeoff_tilt"].values,
-        found["landing_error"].values,
-        int(failed(found["ended"]).sum()),
+        flown["takeoff_tilt"].values,
+        flown["landing_error"].values,
+        int(failed(flown["ended"]).sum()),
     )
 
 
@@ -148,28 +129,14 @@ def error_map(
     if not own:
         return landings(takeoff, points, kept=kept)
     alone = fly(MODEL, takeoff, landing_time(kept), samples=2, accuracy=1e-8)
-    return landings(takeoff, points, target(alone), kept)
+    return landings(takeoff, points, alone, kept)
 
 
 @cache
 def sensitivity(frequency: float | None, pose: Pose = "wrap") -> Array:
     """d(somersault, tilt, twist at landing) / d(tilt, twist at takeoff), (3, 2)."""
-    step = 1e-4
-    told = Report(("somersault", "tilt", "twist"))
-    found = ensemble(
-        MODEL,
-        strategy(frequency, pose),
-        landing_time(),
-        {
-            "takeoff_tilt": Vary("takeoff.tilt", samples=[step, -step, 0.0, 0.0]),
-            "takeoff_twist": Vary("takeoff.twist", samples=[0.0, 0.0, step, -step]),
-        },
-        report=told,
-        accuracy=1e-10,
-        steps=10 * _STEPS,
-    ).dataset
-    end = np.array([found[name].values for name in ("somersault", "tilt", "twist")])
-    return np.stack([end[:, 0] - end[:, 1], end[:, 2] - end[:, 3]], 1) / (2 * step)
+    takeoff = strategy(frequency, pose)
+    return landing_derivatives(MODEL, takeoff, landing_time(), steps=10 * _STEPS).values
 
 
 def joint_names() -> tuple[str, ...]:

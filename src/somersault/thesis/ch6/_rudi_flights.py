@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.ensembles._report import landing_error
+from somersault.ensembles import landing_error, landing_target
 from somersault.flight import Flight, fly, off_nominal
 from somersault.model import named_pose
 from somersault.thesis._claims import number, statement
@@ -29,7 +29,7 @@ _GROUPS = ("shoulder", "elbow", "hip", "torso")
 
 def error(flight: Flight) -> float:
     """The landing error e of section 6.3.2."""
-    return float(landing_error(rudi.target(rudi.nominal()), rudi.target(flight)))
+    return float(landing_error(landing_target(rudi.nominal()), landing_target(flight)))
 
 
 @cache

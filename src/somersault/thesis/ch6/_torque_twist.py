@@ -9,18 +9,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.flight import Flight
-from somersault.flight._maneuvers import (
+from somersault.flight import (
+    Flight,
     Maneuver,
     arm_tilt,
     inertia_change,
+    principal_attitude,
+    rigid_continuation,
     torque_twist,
     twist_time,
 )
 from somersault.thesis._claims import statement
 from somersault.thesis._entries import Result, Table
-from somersault.thesis.ch1._techniques import SHARP, locked, rotation_number, tilted, until
-from somersault.thesis.ch4._tilt_and_twist_paths import principal_attitude
+from somersault.thesis.ch1._techniques import SHARP, rotation_number, tilted, until
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -64,7 +65,7 @@ def rotation_numbers() -> tuple[tuple[float, float, float, float], ...]:
     rows = []
     for degrees in _TILTS:
         made = tilted(float(np.radians(degrees)))
-        exact = locked(made.fly(accuracy=SHARP, samples=[0.0]))
+        exact = rigid_continuation(made.fly(accuracy=SHARP, samples=[0.0]))
         rows.append((
             degrees, rotation_number(made)[0], exact.twists_per_somersault,
             exact.twists_per_somersault_quadrature(),

@@ -1,0 +1,42 @@
+"""LLVM text to machine code of this processor."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+_ROUNDING = ("fma", "fma4", "avx2", "avx512f", "neon", "sve")  # as LLVM calls them
+
+
+def compiled(*modules: str) -> Any:
+    """An engine with the functions of LLVM modules, which may call one another's.
+
+    It must outlive the addresses taken from it.
+    """
+    import llvmlite.binding as llvm
+
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    target = llvm.Target.from_default_triple()
+    machine = target.create_target_machine(
+        cpu=llvm.get_host_cpu_name(),
+        features=llvm.get_host_cpu_features().flatten(),
+        opt=2,
+        jit=True,
+    )
+    whole, *others = [llvm.parse_assembly(text) for text in modules]
+    for other in others:
+        whole.link_in(other)
+    engine = llvm.create_mcjit_compiler(whole, machine)
+    engine.finalize_object()
+    return engine
+
+
+@cache
+def processor() -> str:
+    """The kind of processor that code is compiled for here, with what decides how it rounds: which
+    multiply-adds are fused, and how wide vectors are."""
+    import llvmlite.binding as llvm
+
+    features = llvm.get_host_cpu_features()
+    return "+".join([llvm.get_host_cpu_name(), *(f for f in _ROUNDING if features.get(f))])
