@@ -144,6 +144,97 @@ def test_several_joints_of_a_body_stay_in_order() -> None:
     assert_same_machine(path, load(path))
 
 
+SLIDES = "".join(f'<joint type="slide" axis="{axis}"/>' for axis in ("1 0 0", "0 1 0", "0 0 1"))
+HINGES = "".join(f'<joint axis="{axis}"/>' for axis in ("1 0 0", "0 1 0", "0 0 1"))
+PLAIN = '<inertial pos="0 0 0" mass="5" diaginertia="0.05 0.09 0.1"/>'
+
+
+@pytest.mark.parametrize(
+    "root", [SLIDES + HINGES, HINGES + SLIDES, SLIDES + '<joint type="ball"/>']
+)
+def test_six_virtual_joints_are_a_free_base(root: str) -> None:
+    path = written(f"<mujoco><worldbody><body>{root}{PLAIN}</body></worldbody></mujoco>")
+    model = load(path)
+    assert (model.free, model.mass, model.coordinates) == (True, 5.0, ())
+    np.testing.assert_allclose(np.diag(model.bodies[0].inertia), (0.05, 0.09, 0.1))
+
+
+@pytest.mark.parametrize(
+    "root",
+    [
+        SLIDES,
+        SLIDES + HINGES.replace("1 0 0", "0 1 0"),
+        SLIDES.replace("1 0 0", "0 1 0") + HINGES,
+        SLIDES + HINGES.replace("<joint", '<joint stiffness="1"'),
+    ],
+)
+def test_other_roots_stay_on_joints_to_the_ground(root: str) -> None:
+    path = written(f"<mujoco><worldbody><body>{root}{PLAIN}</body></worldbody></mujoco>")
+    if "stiffness" in root or root == SLIDES:
+        assert not load(path).free
+    else:
+        assert "moves no mass" in told(path)  # two joints do the same
+
+
+def test_the_base_can_be_held_and_let_go() -> None:
+    held = load(mjcf(), base="fixed")
+    assert [(body.name, body.parent) for body in held.bodies] == [("arm", -1)]
+    stand = (
+        f'<body name="stand" pos="0 0 1">{MASS}<body name="arm"><joint name="hinge"/>{MASS}</body>'
+    )
+    path = written(f"<mujoco><worldbody>{stand}</body></worldbody></mujoco>")
+    assert quietly(path).mass == 2
+    free = load(path, base="free")
+    assert (free.free, free.mass, [body.name for body in free.bodies]) == (
+        True,
+        4,
+        ["stand", "arm"],
+    )
+    pendulum = written(
+        f"<mujoco><worldbody><body name='b'><joint/>{MASS}</body></worldbody></mujoco>"
+    )
+    assert not load(pendulum).free
+    assert load(pendulum, base="free").joints == ()
+
+
+FINGERS = (
+    f'<body><joint name="left" ref="10"/>{MASS}</body><body><joint name="right"/>{MASS}</body>'
+)
+
+
+def test_a_linear_coupling_of_two_joints_is_followed() -> None:
+    couple = '<joint joint1="right" joint2="left" polycoef="0.1 -2 0 0 0"/>'
+    model = load(mjcf(FINGERS, after=f"<equality>{couple}</equality>"))
+    zero = np.pi / 18  # where left is drawn
+    follow = model.joint("right").follows
+    assert follow is not None
+    assert (follow.leader, follow.factor) == ("left", -2.0)
+    assert follow.offset == pytest.approx(0.1 + 2 * zero)
+    assert model.home[model.coordinate_slice("right")] == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(
+    "couple",
+    [
+        '<joint name="odd" joint1="right" joint2="left" polycoef="0 1 0.1 0 0"/>',
+        '<joint name="odd" joint1="right"/>',
+        '<connect name="odd" body1="base" body2="arm" anchor="0 0 0"/>',
+        '<joint joint1="right" joint2="left"/><joint name="odd" joint1="right" joint2="hinge"/>',
+    ],
+)
+def test_other_couplings_are_refused_by_name(couple: str) -> None:
+    assert "'odd'" in told(mjcf(FINGERS, after=f"<equality>{couple}</equality>"))
+
+
+def test_where_inertias_come_from() -> None:
+    model = quietly(written(WELDED))
+    assert [body.inertia_from for body in model.bodies] == ["file, shapes", "file, shapes"]
+    assert [body.inertia_from for body in load(mjcf()).bodies] == ["file", "file"]
+    always = mjcf('<geom size="0.1"/>', before='<compiler inertiafromgeom="true"/>')
+    written(always.read_text().replace(f"{MASS}</body></body>", '<geom size="1"/></body></body>'))
+    assert [body.inertia_from for body in quietly(always).bodies] == ["shapes", "shapes"]
+
+
 # ------------------------------------------------------------------------------------ URDF
 
 LINK = (
@@ -198,14 +289,10 @@ SITES = '<site name="s"/><body><site name="t"/></body>'
 ROPE = '<site site="s"/><site site="t"/></spatial></tendon>'
 PAIR = f'<body name="other"><freejoint/>{MASS}</body>'
 REFUSED = {
-    "joint 'hinge' has dry friction": {"joint": 'frictionloss="1"'},
     "joint 'hinge' has a polynomial": {"joint": 'stiffness="1 2"'},
     "joint 'hinge' has a polynomial spring or damper": {"joint": 'damping="1 2"'},
     "'weld'": {"after": '<equality><joint name="weld" joint1="hinge"/></equality>'},
     "'rope'": {"inside": SITES, "after": f'<tendon><spatial name="rope" stiffness="3">{ROPE}'},
-    "'biceps'": {
-        "after": '<actuator><muscle name="biceps" joint="hinge" lengthrange="0 1"/></actuator>'
-    },
     "density": {"before": '<option density="1.2"/>'},
     "viscosity": {"before": '<option viscosity="0.1"/>'},
     "plugin": {"before": '<extension><plugin plugin="no.such.plugin"/></extension>'},
@@ -260,15 +347,32 @@ IGNORED = {
     "1 geom that could touch": {"inside": '<geom size="0.1"/>'},
     "2 sites": {"inside": '<site name="s"/><site name="t"/>'},
     "1 keyframe": {"after": '<keyframe><key name="start"/></keyframe>'},
+    "1 actuator (muscle)": {
+        "after": '<actuator><muscle name="biceps" joint="hinge" lengthrange="0 1"/></actuator>'
+    },
+    "1 tendon": {
+        "after": '<tendon><fixed name="t" limited="true" range="-1 1">'
+        '<joint joint="hinge" coef="1"/>'
+        "</fixed></tendon>"
+    },
+    "1 inactive equality constraint": {
+        "after": '<equality><joint joint1="hinge" active="false"/></equality>'
+    },
 }
 
 
 @pytest.mark.parametrize("what", IGNORED)
 def test_what_has_no_part_in_flight_is_left_out_with_a_warning(what: str) -> None:
-    path = mjcf(**IGNORED[what])
+    path, what = mjcf(**IGNORED[what]), what.removesuffix(" (muscle)")
     with pytest.warns(SomersaultWarning, match=f"thing.xml.*{what}"):
         model = load(path)
     assert model.ignored == (what,)
+    assert model.bodies == load(mjcf()).bodies
+
+
+def test_dry_friction_is_left_out_with_a_warning() -> None:
+    with pytest.warns(SomersaultWarning, match=r"dry friction.*hinge"):
+        model = load(mjcf(joint='frictionloss="1"'))
     assert model.bodies == load(mjcf()).bodies
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from dataclasses import FrozenInstanceError, replace
 from typing import Any
@@ -11,8 +12,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from somersault import SomersaultError
-from somersault.model import GROUND, Body, Joint, Model, as_matrix, load, shipped
+from somersault import SomersaultError, SomersaultWarning
+from somersault.model import GROUND, Body, Follow, Joint, Model, as_matrix, load, shipped
 
 NAN, INF = float("nan"), float("inf")
 ORIGIN = (0.0, 0.0, 0.0)
@@ -62,9 +63,6 @@ REFUSED: dict[str, tuple[Callable[[], Model], tuple[str, ...]]] = {
         arm(inertia=((1.0, 0.2, 0.0), (0.1, 1.0, 0.0), (0.0, 0.0, 1.0))),
         ("'arm'", "symmetric"),
     ),
-    "inertia negative": (arm(inertia=diagonal(1, 1, -0.1)), ("'arm'", "negative principal")),
-    "triangle": (arm(inertia=diagonal(1, 1, 2.1)), ("'arm'", "sum of the other two")),
-    "inertia without mass": (arm(mass=0.0), ("'arm'", "no mass")),
     "two bodies of one name": (arm(name="base"), ("two body", "'base'")),
     "two joints of one name": (arm(joints=(HINGE, HINGE)), ("two joint", "'hinge'")),
     "itself as parent": (arm(parent=1), ("'arm'", "parent")),
@@ -124,14 +122,88 @@ def test_accepted(make: Callable[[], Model]) -> None:
 
 @settings(derandomize=True, max_examples=60, deadline=None)
 @given(st.tuples(*[st.floats(0.01, 10)] * 3))
-def test_the_triangle_inequality_is_the_whole_condition(values: tuple[float, ...]) -> None:
+def test_the_triangle_inequality_decides_what_is_flown_with_a_warning(
+    values: tuple[float, ...],
+) -> None:
     possible = max(values) <= sum(values) - max(values)
-    try:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
         arm(inertia=diagonal(*values))()
-    except SomersaultError:
+    if caught:
         assert not possible
+        assert "sum of the other two" in str(caught[0].message)
     else:
         assert possible or max(values) == pytest.approx(sum(values) - max(values), rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("inertia", "how_much"), [((1, 1, 2.1), "1.05 times"), ((1, 1, -0.1), "-0.1 kg m²")]
+)
+def test_a_body_that_cannot_be_is_named_with_how_much(
+    inertia: tuple[float, ...], how_much: str
+) -> None:
+    with pytest.warns(SomersaultWarning, match=rf"thing: .*arm \({how_much}\)"):
+        thing = arm(inertia=diagonal(*inertia))()
+    assert load(thing) is thing  # the whole moves as a body can
+
+
+def test_a_rotor_without_mass_is_named() -> None:
+    with pytest.warns(SomersaultWarning, match=r"arm \(without mass\)"):
+        model(BASE, replace(ARM, mass=0.0), HAND)
+
+
+IMPOSSIBLE: dict[str, tuple[Callable[[], Model], tuple[str, ...]]] = {
+    "too little inertia": (
+        lambda: model(BASE, replace(ARM, mass=0.1, inertia=diagonal(1, -0.9, 1))),
+        ("'hinge'", "negative kinetic energy"),
+    ),
+    "a rod about its own axis": (
+        lambda: model(BASE, replace(ARM, com=ORIGIN, inertia=diagonal(1, 0, 1))),
+        ("'hinge'", "moves no mass"),
+    ),
+    "a rod alone": (
+        lambda: model(replace(BASE, inertia=diagonal(1, 0, 1))),
+        ("turning its base", "moves no mass"),
+    ),
+    "two hinges about one axis": (
+        lambda: model(
+            BASE,
+            replace(ARM, mass=0.0, inertia=diagonal(0, 0, 0)),
+            replace(ARM, name="hand", parent=1, joints=(ELBOW,)),
+        ),
+        ("joint", "moves no mass"),
+    ),
+}
+
+
+@pytest.mark.filterwarnings("ignore::somersault._core.errors.SomersaultWarning")
+@pytest.mark.parametrize("what", IMPOSSIBLE)
+def test_a_whole_that_cannot_move_is_refused_where_it_is_loaded(what: str) -> None:
+    make, told = IMPOSSIBLE[what]
+    with pytest.raises(SomersaultError) as caught:
+        load(make())
+    for words in told:
+        assert words in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("limits", "reference", "home"),
+    [((-2.7, -0.9), 0.0, -0.9), ((0.2, 1.0), 0.0, 0.2), ((-1.0, 1.0), 0.3, 0.3), (None, 0.3, 0.3)],
+)
+def test_a_joint_drawn_outside_its_range_stands_at_the_nearer_end(
+    limits: tuple[float, float] | None, reference: float, home: float
+) -> None:
+    thing = hinge(limits=limits, reference=reference)()
+    (joint,) = thing.joints
+    assert thing.home.tolist() == list(joint.home) == [home]
+    assert joint.drawn_outside == (home != reference)
+
+
+def test_a_follower_stands_where_its_leader_has_it() -> None:
+    leader = replace(HINGE, limits=(0.2, 1.0))
+    follower = replace(ELBOW, follows=Follow("hinge", -2.0, 0.1))
+    thing = model(BASE, replace(ARM, joints=(leader,)), replace(HAND, joints=(follower,)))
+    assert thing.home.tolist() == pytest.approx([0.2, -0.3])
 
 
 # --------------------------------------------------------------------------- what it tells

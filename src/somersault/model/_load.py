@@ -9,9 +9,14 @@ from dataclasses import replace
 from functools import cache
 from importlib.resources import as_file, files
 from pathlib import Path
+from typing import get_args
 
+from somersault._core.checks import one_of
 from somersault._core.errors import SomersaultError, SomersaultWarning
-from somersault.attitude import as_axes
+from somersault.attitude import AXES, as_axes
+from somersault.model._base import Base, rooted
+from somersault.model._mass import check_mass_matrix
+from somersault.model._strange import listed
 from somersault.model._types import Model
 
 _SHIPPED = files("somersault.model") / "shipped"
@@ -23,24 +28,54 @@ def shipped() -> tuple[str, ...]:
     return tuple(sorted(f.name[:-4] for f in _SHIPPED.iterdir() if f.name.endswith(".xml")))
 
 
-def load(source: str | os.PathLike[str] | Model, axes: Sequence[int] | None = None) -> Model:
+def load(
+    source: str | os.PathLike[str] | Model,
+    axes: Sequence[int] | None = None,
+    base: Base | None = None,
+) -> Model:
     """A model, by the name of a shipped one or from an MJCF, URDF or bioMod file.
 
-    The format follows the ending: .xml or .mjcf, .urdf, .bioMod. A `Model` is given back as
-    it is. What a file holds that has no part in flight is left out with a SomersaultWarning;
-    what would change a flight and cannot be carried raises SomersaultError.
+    The format follows the ending (.xml or .mjcf, .urdf, .bioMod), and of XML the root element.
+    What a file holds that has no part in flight is left out with a SomersaultWarning, and what
+    is strange in it read as its own format's programs read it, likewise.
 
-    `axes` are the body's axes about which it somersaults, tilts and twists: (2, 1, 3) unless
-    said otherwise, whatever the file; (1, 2, 3) for an acrobat of biorbd's with x to his right.
+    Parameters
+    ----------
+    source : str, path or Model
+        A `Model` is given back as it is.
+    axes : sequence of int, optional
+        The body's axes about which it somersaults, tilts and twists: (2, 1, 3) unless said
+        otherwise, whatever the file; (1, 2, 3) for an acrobat of biorbd's with x to his right.
+    base : {"free", "fixed"}, optional
+        "free" lets go of what the file fixes to the ground, or of the body on joints there;
+        "fixed" holds the base that the file has free. By default what the file says: in MJCF a
+        free joint, in a .bioMod the root's six degrees of freedom; a URDF's root link is free
+        unless it is called `world` or is a mere frame, without mass and with one joint on it.
+
+    Raises
+    ------
+    SomersaultError
+        For a file that is none, or describes no body that can fly.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> so.load("gymnast").free
+    True
+    >>> so.load("gymnast", base="fixed").free
+    False
     """
     wanted = None if axes is None else as_axes(axes)
-    model = _found(source)
+    if base is not None:
+        one_of("base", base, get_args(Base))
+    model = _found(source, base)
+    check_mass_matrix(model)
     return model if wanted is None else replace(model, axes=wanted)
 
 
-def _found(source: str | os.PathLike[str] | Model) -> Model:
+def _found(source: str | os.PathLike[str] | Model, base: Base | None) -> Model:
     if isinstance(source, Model):
-        return source
+        return _rebased(source, base)
     try:
         name = os.fspath(source)
         if not isinstance(name, str):
@@ -50,16 +85,35 @@ def _found(source: str | os.PathLike[str] | Model) -> Model:
             f"{source!r} is no model; give a shipped model's name, a file, or a Model"
         ) from None
     if name in shipped():
-        return _shipped(name)
+        return _rebased(_shipped(name), base)
     path = Path(name)
-    model = _read(path)
+    model = _read(path, base)
     if model.ignored:
-        warnings.warn(
-            f"{path.name}: left out, as they have no part in flight: {', '.join(model.ignored)}",
-            SomersaultWarning,
-            stacklevel=3,
+        _note(path, f"left out, as they have no part in flight: {', '.join(model.ignored)}")
+    outside = [
+        f"{joint.name} ({joint.home[0]:g})"
+        for joint in model.joints
+        if joint.drawn_outside and joint.follows is None
+    ]
+    if outside:
+        _note(
+            path,
+            "joints drawn outside their ranges stand at the nearer end where nothing else is said "
+            f"of them: {listed(outside)}",
         )
     return model
+
+
+def _note(path: Path, what: str) -> None:
+    warnings.warn(f"{path.name}: {what}", SomersaultWarning, stacklevel=4)
+
+
+def _rebased(model: Model, base: Base | None) -> Model:
+    """The same model on the base that is asked for."""
+    if base is None or model.free == (base == "free"):
+        return model
+    on = rooted(model.name, model.bodies, model.free, base)
+    return replace(model, free=on.free, bodies=on.bodies, axes=model.axes if on.free else AXES)
 
 
 @cache
@@ -70,7 +124,7 @@ def _shipped(name: str) -> Model:
         return read_mjcf(path)
 
 
-def _read(path: Path) -> Model:
+def _read(path: Path, base: Base | None) -> Model:
     ending = path.suffix.lower()
     if not os.path.isfile(path):  # which, unlike pathlib, takes any name
         if ending == "":
@@ -81,15 +135,18 @@ def _read(path: Path) -> Model:
     if ending == ".biomod":
         from somersault.model.read._biomod import read_biomod
 
-        return read_biomod(path)
-    if ending in (".xml", ".mjcf"):
+        return _rebased(read_biomod(path), base)
+    if ending in (".xml", ".mjcf", ".urdf"):
+        from somersault.model.read._xml import root_tag
+
+        urdf = root_tag(path) == "robot" or (ending == ".urdf" and root_tag(path) != "mujoco")
+        if urdf:
+            from somersault.model.read._urdf import read_urdf
+
+            return read_urdf(path, base)
         from somersault.model.read._mujoco import read_mjcf
 
-        return read_mjcf(path)
-    if ending == ".urdf":
-        from somersault.model.read._mujoco import read_urdf
-
-        return read_urdf(path)
+        return read_mjcf(path, base)
     raise SomersaultError(
         f"{path.name} ends in {ending or 'nothing'!r}, which is no model format; "
         "use .xml (MJCF), .urdf or .bioMod"

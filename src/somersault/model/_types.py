@@ -7,6 +7,7 @@ user may get wrong in a model file is refused here, in one place, whatever forma
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -14,7 +15,7 @@ from typing import Literal
 
 import numpy as np
 
-from somersault._core.errors import SomersaultError
+from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault.attitude import AXES, Axes, as_axes
 from somersault.model._vectors import IDENTITY, ZERO, Matrix, Vector
 from somersault.model.shapes import Shape
@@ -74,8 +75,17 @@ class Joint:
 
     @property
     def home(self) -> tuple[float, ...]:
-        """Its coordinates in the pose in which the file draws the model."""
-        return (1.0, 0.0, 0.0, 0.0) if self.kind == "ball" else (self.reference,)
+        """Its coordinates where nothing else is said of it: as the file draws the model, or at the
+        nearer end of its range where it is drawn outside."""
+        if self.kind == "ball":
+            return (1.0, 0.0, 0.0, 0.0)
+        low, high = self.limits or (-math.inf, math.inf)
+        return (min(max(self.reference, low), high),)
+
+    @property
+    def drawn_outside(self) -> bool:
+        """Whether the file draws it outside its range."""
+        return self.kind != "ball" and abs(self.home[0] - self.reference) > LIMIT_SLACK
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +95,9 @@ class Body:
     `position` and `rotation` (columns: this body's axes) place its frame in its parent's
     when every joint of it stands at its reference. `com` and `inertia` (about `com`) are in
     the body's own axes; kg, m, kg m². `shapes` are what there is to see of it, in its own axes:
-    they decide nothing, so bodies that differ in them alone are equal.
+    they decide nothing, so bodies that differ in them alone are equal. `inertia_from` says what
+    its mass and inertia were read from: "file", "shapes" (at a density), both, as
+    "file, shapes", or "nothing".
     """
 
     name: str
@@ -97,6 +109,7 @@ class Body:
     rotation: Matrix = IDENTITY
     joints: tuple[Joint, ...] = ()
     shapes: tuple[Shape, ...] = field(default=(), compare=False, repr=False)
+    inertia_from: str = field(default="file", compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -140,8 +153,19 @@ class Model:
 
     @cached_property
     def home(self) -> np.ndarray:
-        """Joint coordinates of the pose in which the file draws the model, (coordinates,)."""
-        return np.array([value for joint in self.joints for value in joint.home])
+        """Joint coordinates where nothing else is said, (coordinates,): each joint's `home`, and
+        those that follow another where that one's has them."""
+        leaders = {joint.name: joint.home[0] for joint in self.joints}
+        values: list[float] = []
+        for joint in self.joints:
+            follow = joint.follows
+            own = (
+                joint.home
+                if follow is None
+                else (follow.offset + follow.factor * leaders[follow.leader],)
+            )
+            values += own
+        return np.array(values)
 
     def joint(self, name: str) -> Joint:
         """The joint of that name; SomersaultError, with the names there are, if none is."""
@@ -226,6 +250,7 @@ def _check(model: Model) -> None:
     if model.mass <= 0:
         raise SomersaultError(f"{model.name} has no mass; give its bodies masses")
     _check_moving_mass(model)
+    _warn_of_impossible(model)
 
 
 def _check_tree(model: Model, index: int, body: Body) -> None:
@@ -266,18 +291,34 @@ def _check_body(model: Model, body: Body) -> None:
     size = np.abs(inertia).max()
     if np.abs(inertia - inertia.T).max() > 1e-6 * size:
         raise SomersaultError(f"{where} has an inertia that is not symmetric; make it symmetric")
-    small, middle, large = np.linalg.eigvalsh(inertia)
-    if small < -1e-9 * size:
-        raise SomersaultError(
-            f"{where} has the negative principal inertia {small:g}; inertias are positive"
+
+
+def _warn_of_impossible(model: Model) -> None:
+    """Name the bodies that no distribution of mass makes: one principal inertia larger than the
+    sum of the other two, or negative, or inertia without mass.
+
+    Such are published every day and read by every program, since the motion of the whole is
+    defined as long as its mass matrix is positive; that is looked at where models are loaded.
+    """
+    odd = []
+    for body in model.bodies:
+        small, middle, large = np.linalg.eigvalsh(body.inertia)
+        rounding = 1e-9 * (large + body.mass * np.dot(body.com, body.com))
+        if body.mass == 0 and large > 0:
+            odd.append(f"{body.name} (without mass)")
+        elif small < -rounding:
+            odd.append(f"{body.name} ({small:.3g} kg m²)")
+        elif large > (small + middle) * (1 + 1e-6) + rounding:
+            odd.append(f"{body.name} ({large / max(small + middle, 1e-300):.4g} times)")
+    if odd:
+        more = f" and {len(odd) - 8} more" if len(odd) > 8 else ""
+        warnings.warn(
+            f"{model.name}: no rigid body has inertia without mass, or a principal inertia that is "
+            "negative or larger than the sum of the other two, as these have: "
+            f"{', '.join(odd[:8])}{more}; flown as given",
+            SomersaultWarning,
+            stacklevel=4,
         )
-    if large > (small + middle) * (1 + 1e-6):
-        raise SomersaultError(
-            f"{where} has principal inertias {small:g}, {middle:g}, {large:g}: no rigid body has "
-            "one larger than the sum of the other two, so correct the inertia"
-        )
-    if body.mass == 0 and size > 0:
-        raise SomersaultError(f"{where} has inertia but no mass; give it a mass or no inertia")
 
 
 def _check_joint(model: Model, joint: Joint) -> None:
@@ -317,14 +358,17 @@ def _check_follow(model: Model, joint: Joint, follow: Follow) -> None:
 
 
 def _check_moving_mass(model: Model) -> None:
-    """Every joint must move something, or its acceleration has no meaning."""
+    """Every joint must move something, itself or by those that follow it, or its acceleration
+    has no meaning."""
+    leading = {joint.follows.leader for joint in model.joints if joint.follows is not None}
     outboard = [body.mass for body in model.bodies]
     for index in range(len(model.bodies) - 1, 0, -1):
         if model.bodies[index].parent != GROUND:
             outboard[model.bodies[index].parent] += outboard[index]
     for body, mass in zip(model.bodies, outboard, strict=True):
-        if body.joints and mass == 0:
+        idle = [j.name for j in body.joints if not j.armature and j.name not in leading]
+        if idle and mass == 0:
             raise SomersaultError(
-                f"{model.name}: joint {body.joints[-1].name!r} moves no mass; give body "
-                f"{body.name!r} a mass or remove the joint"
+                f"{model.name}: joint {idle[-1]!r} moves no mass; give body {body.name!r} a mass "
+                "or remove the joint"
             )

@@ -29,12 +29,15 @@ class _Lump:
     coms: list[Array] = field(default_factory=list)
     inertias: list[Array] = field(default_factory=list)
     shapes: list[Shape] = field(default_factory=list)
+    sources: list[str] = field(default_factory=list)
 
     def add(self, body: Body, position: Array, rotation: Array) -> None:
         self.masses.append(body.mass)
         self.coms.append(position + rotation @ np.array(body.com))
         self.inertias.append(rotation @ np.array(body.inertia) @ rotation.T)
         self.shapes += [shape.placed(position, rotation) for shape in body.shapes]
+        if body.mass != 0:
+            self.sources += [s for s in body.inertia_from.split(", ") if s not in self.sources]
 
     def joined(self, body: Body) -> Body:
         """`body` with the mass, com, inertia (parallel axes) and shapes of the whole lump."""
@@ -52,6 +55,7 @@ class _Lump:
             com=as_vector(com),
             inertia=as_matrix(inertia),
             shapes=tuple(self.shapes),
+            inertia_from=", ".join(sorted(self.sources)) or body.inertia_from,
         )
 
 

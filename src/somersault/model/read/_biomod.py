@@ -15,12 +15,11 @@ from pathlib import Path
 import numpy as np
 
 from somersault._core.errors import SomersaultError
-from somersault.model._types import GROUND, IDENTITY, ZERO, Body, Joint, Model
+from somersault.model._base import rooted
+from somersault.model._types import GROUND, Body, Joint, Model
 from somersault.model._weld import merge_welded
 from somersault.model.read._biomod_text import AXES, File, Segment
 from somersault.model.read._biomod_words import Words, read_text, shown
-
-_NEGLIGIBLE = 1e-6  # of the whole mass: what a carrier of the root's translations may weigh
 
 
 def read_biomod(path: Path) -> Model:
@@ -36,19 +35,19 @@ def read_biomod(path: Path) -> Model:
     file = File(Words(path.name, read_text(path)))
     file.read()
     segments = list(file.segments.values())
-    bodies = merge_welded(_bodies(segments), free=False)
-    if not bodies:
+    bodies = _bodies(segments)
+    _refuse_mirrors(path.name, merge_welded(bodies, free=False))
+    on = rooted(path.name, bodies, free=False)
+    if not on.bodies:
         raise SomersaultError(
             f"{path.name}: no segment has translations or rotations, so nothing can fly; give "
             "the root segment translations xyz and rotations xyz"
         )
-    _refuse_mirrors(path.name, bodies)
-    base = _base(bodies)
     return Model(
         name=path.stem,
-        free=base is not None,
-        bodies=bodies if base is None else _in_the_air(bodies, base),
-        ignored=_ignored(file, segments, bodies[: base + 1] if base is not None else ()),
+        free=on.free,
+        bodies=on.bodies,
+        ignored=_ignored(file, segments, on.let_go),
     )
 
 
@@ -105,50 +104,8 @@ def _refuse_mirrors(file: str, bodies: tuple[Body, ...]) -> None:
             )
 
 
-def _base(bodies: tuple[Body, ...]) -> int | None:
-    """The body that becomes the free base: the first that can move in all six ways.
-
-    The six may be split over a carrier without mass, as in the models with a quaternion root:
-    one segment for the translations, its only child for the rotations.
-    """
-    total = sum(body.mass for body in bodies)
-    slides = turns = False
-    index = 0
-    while True:
-        body = bodies[index]
-        kinds = [joint.kind for joint in body.joints]
-        if kinds.count("slide") == 3 and not slides:
-            slides = True
-            kinds = [kind for kind in kinds if kind != "slide"]
-        if kinds in (["ball"], ["hinge"] * 3) and not turns:
-            turns = True
-            kinds = []
-        if kinds:
-            return None
-        if slides and turns:
-            return index
-        children = [number for number, child in enumerate(bodies) if child.parent == index]
-        if turns or body.mass > _NEGLIGIBLE * total or len(children) != 1:
-            return None
-        index = children[0]
-
-
-def _in_the_air(bodies: tuple[Body, ...], base: int) -> tuple[Body, ...]:
-    """The bodies with `base` first, free, and its carriers gone."""
-    carriers = set()
-    above = bodies[base].parent
-    while above != GROUND:
-        carriers.add(above)
-        above = bodies[above].parent
-    order = [base, *(n for n in range(len(bodies)) if n != base and n not in carriers)]
-    places = {old: new for new, old in enumerate(order)} | {GROUND: GROUND}
-    free = replace(bodies[base], parent=GROUND, position=ZERO, rotation=IDENTITY, joints=())
-    rest = [replace(bodies[old], parent=places[bodies[old].parent]) for old in order[1:]]
-    return (free, *rest)
-
-
-def _ignored(file: File, segments: list[Segment], base: tuple[Body, ...]) -> tuple[str, ...]:
-    """What the file held that has no part in flight, in words; `base` and its carriers."""
+def _ignored(file: File, segments: list[Segment], root: tuple[Joint, ...]) -> tuple[str, ...]:
+    """What the file held that has no part in flight, in words; the joints of a free root too."""
     said = [
         kind if n == 0 else f"{n} {kind}" + ("s" if n > 1 else "")
         for kind, n in file.ignored.items()
@@ -159,6 +116,6 @@ def _ignored(file: File, segments: list[Segment], base: tuple[Body, ...]) -> tup
         moving[segment.name] = free or moving[segment.parent]
     fixed = [name for name, moves in moving.items() if not moves and name != "root"]
     said += [f"segment {name}, fixed to the ground" for name in fixed]
-    if any(joint.damping for body in base for joint in body.joints):
+    if any(joint.damping for joint in root):
         said.append("the dampings of the root")  # nothing damps a fall
     return tuple(said)

@@ -1,92 +1,81 @@
-"""MJCF and URDF through MuJoCo's own parser, so that defaults, includes, frames and inertias
-from geometry mean what they mean there."""
+"""MJCF through MuJoCo's own parser, so that defaults, includes, frames and inertias from geometry
+mean what they mean there."""
 
 from __future__ import annotations
 
 import re
-import xml.etree.ElementTree as ElementTree
+import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from somersault._core.errors import SomersaultError
+from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault.attitude import matrix_from_quaternion
-from somersault.model._types import GROUND, Body, Joint, Matrix, Model, Vector
-from somersault.model._weld import merge_welded
+from somersault.model._base import Base, rooted
+from somersault.model._strange import listed
+from somersault.model._types import GROUND, Body, Follow, Joint, Matrix, Model, Vector
+from somersault.model.read._follow import leaders
 from somersault.model.read._mujoco_shapes import body_shapes
-from somersault.model.shapes import Shape
-
-_MOST_BYTES = 50 * 2**20
+from somersault.model.read._xml import MOST_BYTES
 
 
-def read_mjcf(path: Path) -> Model:
-    """The model in an MJCF file; SomersaultError if it has none that can fly."""
-    return _read(path, None)
+def read_mjcf(path: Path, base: Base | None = None) -> Model:
+    """The model in an MJCF file.
 
+    Parameters
+    ----------
+    path : Path
+    base : {"free", "fixed"}, optional
+        Let go of what the file fixes to the world, or hold the free body.
 
-def read_urdf(path: Path) -> Model:
-    """The robot in a URDF file.
-
-    Its root link is the free base, unless the link is called `world`, which by the custom of
-    URDF is the ground.
+    Raises
+    ------
+    SomersaultError
+        If the file has no model, or none that can fly.
     """
-    return _read(path, _root_link(path))
-
-
-def _root_link(path: Path) -> str | None:
-    """The URDF link that is nobody's child, or None if it is the ground."""
-    try:
-        robot = ElementTree.parse(path).getroot()
-    except (ElementTree.ParseError, ValueError, OSError, LookupError):
-        return None  # MuJoCo's parser will say what is wrong, and where
-    for element in robot.iter():
-        element.tag = str(element.tag).rpartition("}")[2]  # whatever the namespace
-    children = {child.get("link") for child in robot.findall("./joint/child")}
-    names = [link.get("name") for link in robot.findall("./link")]
-    roots = [name for name in names if name not in children]
-    joints = [joint.get("name") for joint in robot.findall("./joint")]
-    twice = next((name for name in joints if joints.count(name) > 1), None)
-    if twice is not None:
-        raise SomersaultError(f"{path.name} has two joints named {twice!r}; rename one")
-    if len(roots) > 1:
-        raise SomersaultError(
-            f"{path.name} has {len(roots)} links without a parent, {roots[0]!r} and {roots[1]!r} "
-            "among them; a robot is one tree, so join them or remove one"
-        )
-    return roots[0] if roots and roots[0] != "world" else None
-
-
-def _read(path: Path, free_root: str | None) -> Model:
     import mujoco
 
-    if path.stat().st_size > _MOST_BYTES:
+    if path.stat().st_size > MOST_BYTES:
         raise SomersaultError(
             f"{path.name} is larger than 50 MB, which no model is; check the file"
         )
     mujoco.set_mju_user_warning(lambda _: None)  # else it writes a log where one stands
     try:
-        spec = mujoco.MjSpec.from_file(str(path))
-        if free_root is not None:
-            spec.compiler.fusestatic = False  # the root would vanish into the ground
-            root = spec.body(free_root)
-            if root is None:
-                raise ValueError(f"its root link {free_root!r} is not found; save it as UTF-8")
-            root.add_freejoint()
-        _refuse_muscles(path.name, spec)
-        compiled = spec.compile()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what MuJoCo will do otherwise one day
+            spec = mujoco.MjSpec.from_file(str(path))
+            compiled = spec.compile()
     except (ValueError, RuntimeError, OSError, AttributeError, mujoco.FatalError) as error:
         raise SomersaultError(
             f"{path.name} cannot be read as a model: {_one_line(error)}; correct the file"
         ) from None
     try:
         _refuse(path.name, compiled)
-        bodies, free = _bodies(path.name, compiled)
+        bodies, free = _bodies(path.name, compiled, _from_shapes(spec))
+        left_out = _left_out(compiled)
+        dry = [_joint_name(compiled, j) for j in range(compiled.njnt) if _has_friction(compiled, j)]
     except UnicodeDecodeError:
         raise SomersaultError(
             f"{path.name} has names that are not UTF-8; save it as UTF-8"
         ) from None
-    return Model(path.stem, free, merge_welded(bodies, free), _ignored(compiled))
+    on = rooted(path.name, bodies, free, base)
+    if not on.bodies and bodies:
+        raise SomersaultError(
+            f"{path.name} has nothing that moves, so nothing can fly; give its body a free joint, "
+            "or load it with base='free'"
+        )
+    if dry:
+        warnings.warn(
+            f"{path.name}: joints' dry friction (frictionloss) is left out: {listed(dry)}",
+            SomersaultWarning,
+            stacklevel=5,
+        )
+    left_out += [f"body {name}, fixed to the ground" for name in on.still]
+    if any(joint.damping for joint in on.let_go):
+        left_out.append("the dampings of the root")
+    return Model(path.stem, on.free, on.bodies, tuple(left_out))
 
 
 _PLAINER = {
@@ -95,17 +84,6 @@ _PLAINER = {
     "inertia must satisfy A + B >= C; use 'balanceinertia' to fix": "a body has a principal "
     "inertia that is larger than the sum of the other two, or not a number",
 }
-
-
-def _refuse_muscles(file: str, spec: Any) -> None:
-    import mujoco
-
-    for actuator in spec.actuators:
-        if actuator.gaintype == mujoco.mjtGain.mjGAIN_MUSCLE:
-            raise SomersaultError(
-                f"{file}: actuator {actuator.name!r} is a muscle, which pulls even when it is not "
-                "driven; remove it"
-            )
 
 
 def _one_line(error: Exception) -> str:
@@ -119,8 +97,8 @@ def _one_line(error: Exception) -> str:
 # ------------------------------------------------------------------------------- bodies
 
 
-def _bodies(file: str, m: Any) -> tuple[list[Body], bool]:
-    """Every body that moves, the free base first, and whether there is one."""
+def _bodies(file: str, m: Any, from_shapes: list[bool]) -> tuple[list[Body], bool]:
+    """Every body, a free base first, and whether there is one."""
     import mujoco
 
     free_joint = int(mujoco.mjtJoint.mjJNT_FREE)
@@ -133,27 +111,47 @@ def _bodies(file: str, m: Any) -> tuple[list[Body], bool]:
         )
     order = list(range(1, m.nbody))
     if bases:
-        moving = [b for b in order if m.body_weldid[b] != 0]
-        ours = [b for b in moving if m.body_rootid[b] == m.body_rootid[bases[0]]]
         if m.body_parentid[bases[0]] != 0:
             raise SomersaultError(
                 f"{file}: the free joint of {m.body(bases[0]).name!r} must stand directly in the "
                 "world; move the body there"
             )
-        order = ours + [b for b in moving if b not in ours]
-    still = {b: GROUND for b in range(m.nbody) if m.body_weldid[b] == 0}
-    index = still | {b: k for k, b in enumerate(order)}
+        ours = [b for b in order if m.body_rootid[b] == m.body_rootid[bases[0]]]
+        order = ours + [b for b in order if b not in ours]
+    index = {0: GROUND} | {b: k for k, b in enumerate(order)}
+    follows = _follows(file, m)
     shapes = body_shapes(m)
+    bodies = [
+        replace(
+            _body(m, b, index[int(m.body_parentid[b])], b in bases, follows),
+            shapes=shapes.get(b, ()),
+            inertia_from="shapes" if from_shapes[b] else "file",
+        )
+        for b in order
+    ]
+    return bodies, bool(bases)
+
+
+def _from_shapes(spec: Any) -> list[bool]:
+    """Of each body, in the order of their numbers, whether its inertia is made from its geoms."""
+    import mujoco
+
+    way = spec.compiler.inertiafromgeom
+    always = way == mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE
+    never = way == mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
+    bodies = sorted(spec.bodies, key=lambda body: body.id)
     return [
-        _body(m, b, index[int(m.body_parentid[b])], b in bases, shapes.get(b, ())) for b in order
-    ], bool(bases)
+        len(body.geoms) > 0 and (always or not (never or body.explicitinertial)) for body in bodies
+    ]
 
 
-def _body(m: Any, b: int, parent: int, base: bool, shapes: tuple[Shape, ...]) -> Body:
+def _body(m: Any, b: int, parent: int, base: bool, follows: dict[str, Follow]) -> Body:
     turn = matrix_from_quaternion(m.body_iquat[b])
     inertia = turn @ np.diag(m.body_inertia[b]) @ turn.T
     first = int(m.body_jntadr[b])
-    joints = () if base else tuple(_joint(m, first + k) for k in range(int(m.body_jntnum[b])))
+    joints = (
+        () if base else tuple(_joint(m, first + k, follows) for k in range(int(m.body_jntnum[b])))
+    )
     return Body(
         name=m.body(b).name or f"body_{b}",
         parent=parent,
@@ -163,11 +161,10 @@ def _body(m: Any, b: int, parent: int, base: bool, shapes: tuple[Shape, ...]) ->
         position=_vector(np.zeros(3) if base else m.body_pos[b]),
         rotation=_matrix(np.eye(3) if base else matrix_from_quaternion(m.body_quat[b])),
         joints=joints,
-        shapes=shapes,
     )
 
 
-def _joint(m: Any, j: int) -> Joint:
+def _joint(m: Any, j: int, follows: dict[str, Follow]) -> Joint:
     import mujoco
 
     kinds = {
@@ -179,8 +176,9 @@ def _joint(m: Any, j: int) -> Joint:
     at, dof = int(m.jnt_qposadr[j]), int(m.jnt_dofadr[j])
     ball = kind == "ball"
     limits = (float(m.jnt_range[j][0]), float(m.jnt_range[j][1])) if m.jnt_limited[j] else None
+    name = _joint_name(m, j)
     return Joint(
-        name=m.joint(j).name or _unnamed(m, j),
+        name=name,
         kind=kind,  # type: ignore[arg-type]
         axis=(1.0, 0.0, 0.0) if ball else _vector(m.jnt_axis[j]),
         anchor=_vector(m.jnt_pos[j]),
@@ -190,10 +188,14 @@ def _joint(m: Any, j: int) -> Joint:
         rest=0.0 if ball else float(m.qpos_spring[at]),
         damping=float(m.dof_damping[dof]),
         armature=float(m.dof_armature[dof]),
+        follows=follows.get(name),
     )
 
 
-def _unnamed(m: Any, j: int) -> str:
+def _joint_name(m: Any, j: int) -> str:
+    """Its own, or where it has none its body's, numbered where that has several."""
+    if m.joint(j).name:
+        return str(m.joint(j).name)
     body = int(m.jnt_bodyid[j])
     name = m.body(body).name or f"body_{body}"
     return name if m.body_jntnum[body] == 1 else f"{name}_{j - int(m.body_jntadr[body]) + 1}"
@@ -208,6 +210,35 @@ def _matrix(rows: Any) -> Matrix:
     return _vector(rows[0]), _vector(rows[1]), _vector(rows[2])
 
 
+# ------------------------------------------------------------------------ coupled joints
+
+
+def _follows(file: str, m: Any) -> dict[str, Follow]:
+    """What joints follow, by the equality constraints that couple two of them linearly."""
+    import mujoco
+
+    follows: dict[str, Follow] = {}
+    for e in range(m.neq):
+        if not m.eq_active0[e]:
+            continue
+        where = f"{file}: equality constraint {m.equality(e).name or e!r}"
+        one, other = int(m.eq_obj1id[e]), int(m.eq_obj2id[e])
+        joints = m.eq_type[e] == mujoco.mjtEq.mjEQ_JOINT
+        if not joints or other < 0 or np.any(m.eq_data[e, 2:5]):
+            raise SomersaultError(
+                f"{where} closes a loop, holds a joint, or couples in a way that is not linear, "
+                "which a tree of bodies cannot carry; remove it"
+            )
+        name = _joint_name(m, one)
+        if name in follows:
+            raise SomersaultError(f"{where} couples joint {name!r} a second time; remove it")
+        # y − y0 = a0 + a1 (x − x0), about where the file draws both
+        y0, x0 = (float(m.qpos0[m.jnt_qposadr[j]]) for j in (one, other))
+        offset, factor = (float(number) for number in m.eq_data[e, :2])
+        follows[name] = Follow(_joint_name(m, other), factor, y0 + offset - factor * x0)
+    return leaders(file, follows, [_joint_name(m, j) for j in range(m.njnt)])
+
+
 # ----------------------------------------------------------------- what cannot be carried
 
 
@@ -220,12 +251,6 @@ def _refuse(file: str, m: Any) -> None:
         raise SomersaultError(
             f"{file}: body {m.body(b).name or b!r} has gravcomp, which would hold it up in the "
             "air; set it to 0"
-        )
-    if m.neq:
-        name = m.equality(0).name
-        raise SomersaultError(
-            f"{file}: equality constraint {name or 0!r} closes a loop or couples joints, which a "
-            "tree of bodies cannot carry; remove it"
         )
     if m.nflex:
         raise SomersaultError(
@@ -244,14 +269,12 @@ def _refuse(file: str, m: Any) -> None:
                 m.tendon_damping,
                 m.tendon_dampingpoly,
                 m.tendon_armature,
-                m.tendon_frictionloss,
-                m.tendon_limited,
             )
         )
         if force > 0:
             raise SomersaultError(
-                f"{file}: tendon {m.tendon(t).name or t!r} has stiffness, damping, friction, "
-                "armature or limits, which cannot be carried; remove them or the tendon"
+                f"{file}: tendon {m.tendon(t).name or t!r} has stiffness, damping or armature, "
+                "which cannot be carried; remove them or the tendon"
             )
     if m.opt.density > 0 or m.opt.viscosity > 0 or np.any(m.opt.wind):
         raise SomersaultError(
@@ -266,16 +289,19 @@ def _flex_name(m: Any) -> str | int:
     return mujoco.mj_id2name(m, mujoco.mjtObj.mjOBJ_FLEX, 0) or 0
 
 
+def _has_friction(m: Any, j: int) -> bool:
+    dof = int(m.jnt_dofadr[j])
+    return bool(m.dof_frictionloss[dof] != 0)
+
+
 def _refuse_joint(file: str, m: Any, j: int) -> None:
     import mujoco
 
     kind, dof = int(m.jnt_type[j]), int(m.jnt_dofadr[j])
     free = kind == int(mujoco.mjtJoint.mjJNT_FREE)
     count = 6 if free else 3 if kind == int(mujoco.mjtJoint.mjJNT_BALL) else 1
-    where = f"{file}: joint {m.joint(j).name or _unnamed(m, j)!r}"
+    where = f"{file}: joint {_joint_name(m, j)!r}"
     own = slice(dof, dof + count)
-    if np.any(m.dof_frictionloss[own]):
-        raise SomersaultError(f"{where} has dry friction (frictionloss), not carried; remove it")
     if np.any(m.jnt_stiffnesspoly[j]) or np.any(m.dof_dampingpoly[own]):
         raise SomersaultError(
             f"{where} has a polynomial spring or damper; only linear ones are carried, so give one "
@@ -292,7 +318,7 @@ def _refuse_joint(file: str, m: Any, j: int) -> None:
         )
 
 
-def _ignored(m: Any) -> tuple[str, ...]:
+def _left_out(m: Any) -> list[str]:
     """What has no part in flight, with how many of each there are."""
     contacts = int(np.count_nonzero(m.geom_contype | m.geom_conaffinity))
     counts = {
@@ -304,13 +330,13 @@ def _ignored(m: Any) -> tuple[str, ...]:
         "site": m.nsite,
         "sensor": m.nsensor,
         "actuator": m.nu,
-        "tendon without force": m.ntendon,
+        "tendon": m.ntendon,
+        "inactive equality constraint": int(m.neq - np.count_nonzero(m.eq_active0)),
         "keyframe": m.nkey,
     }
     plural = {"mesh": "meshes", "geom that could touch": "geoms that could touch"}
-    plural["tendon without force"] = "tendons without force"
-    return tuple(
+    return [
         f"{count} {name if count == 1 else plural.get(name, name + 's')}"
         for name, count in counts.items()
         if count
-    )
+    ]
