@@ -29,11 +29,8 @@ from scipy.integrate import solve_ivp
 from somersault.attitude import quaternion_conjugate, quaternion_product
 from somersault.engine import Kernel, Solution
 from somersault.engine import threads as threads_here
-from somersault.flight import Flight, JointTakeoff, Takeoff, fly
-from somersault.flight._course import Course
-from somersault.flight._start import Start, start
-from somersault.flight._system import System, system
-from somersault.flight._takeoff import kinds, plans
+from somersault.flight import Batch, Begun, Flight, JointTakeoff, Takeoff, fly
+from somersault.flight._system import System
 from somersault.model import Model, load
 from somersault.stability import spin as steady_spin
 
@@ -41,6 +38,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from trees import mujoco_addresses, to_mujoco
 
 SPIN, TURNS = 8.64, 8  # rad/s; somersaults of a layout flight
+DURATION = TURNS * 2 * np.pi / SPIN
 TIMED = 16  # flights that MuJoCo is timed over; its time a flight depends on nothing else
 CHUNK = 500  # steps that its rollout keeps at a time
 ACCURACIES = {"layout": (1e-7, 1e-9), "gymnast": (1e-6, 1e-9)}
@@ -56,21 +54,21 @@ class Case:
 
     name: str
     model: Model
-    system: System
-    starts: list[Start]
+    starts: list[Begun]
     duration: float
+
+    @property
+    def system(self) -> System:
+        return self.starts[0].batch.system
 
     @cached_property
     def states(self) -> np.ndarray:
-        many = [s.many for s in self.starts]
-        rows = [self.system.start(m.quaternion, m.omega, m.q, m.u) for m in many]
-        return np.concatenate(rows)
+        return np.concatenate([begun.rows for begun in self.starts])
 
     @cached_property
     def parameters(self) -> np.ndarray:
         begin = np.zeros((1, 1))
-        courses = [Course(self.system, s.plans, s.many, self.duration) for s in self.starts]
-        return np.concatenate([course.parameters(begin)[:, 0] for course in courses])
+        return np.concatenate([b.course.parameters(begin)[:, 0] for b in self.starts])
 
     @cached_property
     def reference(self) -> np.ndarray:
@@ -105,7 +103,6 @@ def _turns(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 def layout() -> Case:
     """The grid of figure 4-12: eight somersaults of furrer for 361 arm angles and springs."""
     model, starts = load("furrer"), []
-    own = None
     for angle in np.linspace(0.4, 2.2, 19):
         nominal = steady_spin(model, 2, {"shoulder": angle})
         inertia = nominal.outboard_inertias["left_shoulder"]
@@ -118,17 +115,14 @@ def layout() -> Case:
                 for name, side in (("left", 1), ("right", -1))
             }
             takeoff = Takeoff(tilt=0.01, spin=SPIN, joints=joints)
-            planned = plans(model, joints)
-            own = own or system(model, kinds(planned), None)
-            starts.append(start(own, takeoff, planned))
-    return Case("layout", model, own, starts, TURNS * 2 * np.pi / SPIN)
+            starts.append(Batch(model, takeoff, DURATION).begun())
+    return Case("layout", model, starts, DURATION)
 
 
 def gymnast_flights(count: int = 256) -> Case:
     """A compliant gymnast: springs of 8 rad/s and light dampers in all thirteen hinges."""
     model, starts, rng = gymnast(), [], np.random.default_rng(6)
     nominal = steady_spin(model)
-    own = None
     for _ in range(count):
         joints = {}
         for joint in model.joints:
@@ -139,10 +133,8 @@ def gymnast_flights(count: int = 256) -> Case:
             )
         omega = np.array([0.0, 6.0, 0.0]) + 0.3 * rng.normal(size=3)
         takeoff = Takeoff(tilt=0.1, angular_velocity=omega, joints=joints)
-        planned = plans(model, joints)
-        own = own or system(model, kinds(planned), None)
-        starts.append(start(own, takeoff, planned))
-    return Case("gymnast", model, own, starts, 1.5)
+        starts.append(Batch(model, takeoff, 1.5).begun())
+    return Case("gymnast", model, starts, 1.5)
 
 
 def stable_layout() -> Flight:
@@ -170,16 +162,16 @@ class InMujoco:
         m.opt.enableflags = 0
         q_at, v_at = mujoco_addresses(case.model, m)
         self.kind, self.models, rows = mujoco.mjtState.mjSTATE_FULLPHYSICS, [], []
-        for start_ in (case.starts[k] for k in which):
+        for start_ in (case.starts[k].start for k in which):
             own, d = copy.copy(m), mujoco.MjData(m)
             own.qpos_spring[q_at] = [
-                plan.rest + (plan.pretension / plan.stiffness if plan.stiffness else 0.0)
-                for plan in start_.plans
+                does.rest + (does.pretension / does.stiffness if does.stiffness else 0.0)
+                for does in (plan.does for plan in start_.plans)
             ]
             for plan in start_.plans:
                 joint = own.joint(plan.joint.name)
-                own.jnt_stiffness[joint.id] = plan.stiffness
-                own.dof_damping[joint.dofadr[0]] = plan.damping
+                own.jnt_stiffness[joint.id] = plan.does.stiffness
+                own.dof_damping[joint.dofadr[0]] = plan.does.damping
             d.qpos[3:7], d.qvel[3:6] = start_.quaternion, start_.omega
             d.qpos[q_at], d.qvel[v_at] = start_.q, start_.u
             row = np.zeros(mujoco.mj_stateSize(m, self.kind))

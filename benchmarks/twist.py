@@ -30,9 +30,8 @@ from somersault.attitude import (
     quaternion_product,
 )
 from somersault.engine import threads as threads_here
-from somersault.flight._start import Start, start
-from somersault.flight._system import system
-from somersault.flight._takeoff import kinds, plans
+from somersault.flight import Batch
+from somersault.flight._start import Start
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from trees import mujoco_addresses
@@ -89,12 +88,11 @@ class Case:
     def starts(self) -> list[Start]:
         """Of all flights, in the order of the map."""
         model, found = so.load("gymnast"), []
-        planned = plans(model, self.takeoff.joints)
-        own = system(model, kinds(planned), None, tape=self.takeoff.tape is not None)
         for leant in GRID:
             for turned in GRID:
                 tilt, twist = self.takeoff.tilt + leant, self.takeoff.twist + turned
-                found.append(start(own, replace(self.takeoff, tilt=tilt, twist=twist), planned))
+                leaning = replace(self.takeoff, tilt=tilt, twist=twist)
+                found.append(Batch(model, leaning, self.duration).begun().start)
         return found
 
     def error(self, which: np.ndarray, quaternions: np.ndarray) -> float:

@@ -64,7 +64,7 @@ def redrawn(model: so.Model, axes: Axes) -> so.Model:
 def retold(takeoff: so.Takeoff, axes: Axes) -> so.Takeoff:
     """The same takeoff in words of the other frame, inertial axes renamed alike."""
     turn, changes = frame(axes), {}
-    for name in ("angular_velocity", "angular_momentum", "velocity", "tape"):
+    for name in ("angular_velocity", "angular_momentum", "position", "velocity", "tape"):
         vector = getattr(takeoff, name)
         if vector is not None:
             changes[name] = (turn @ vector).tolist()
@@ -189,9 +189,11 @@ def test_maneuvers(axes: Axes) -> None:
     drawn, by = redrawn(model, axes), sign(axes)
     for make, spin in ((so.torque_twist, 7.0), (so.torque_twist, -7.0), (so.inertia_change, 6.0)):
         ours, other = make(model, spin=spin), make(drawn, spin=by * spin)
-        start = retold(ours.start, axes)
-        assert other.start.tilt == pytest.approx(start.tilt, abs=1e-13)
-        np.testing.assert_allclose(other.start.angular_momentum, start.angular_momentum, atol=1e-12)
+        start = retold(ours.takeoff, axes)
+        assert other.takeoff.tilt == pytest.approx(start.tilt, abs=1e-13)
+        np.testing.assert_allclose(
+            other.takeoff.angular_momentum, start.angular_momentum, atol=1e-12
+        )
         flights = [maneuver.fly(accuracy=1e-11) for maneuver in (ours, other)]
         assert_same(*flights, axes)
     with pytest.raises(so.SomersaultError, match=f"{axes[0]} for a somersault or {axes[2]} for"):

@@ -19,11 +19,7 @@ from trees import InMujoco, State, random_tree, to_mujoco, unit
 import somersault as so
 from somersault import JointTakeoff, SomersaultError, Takeoff
 from somersault.ensembles import ENDINGS
-from somersault.flight._columns import numbers
-from somersault.flight._start import starts
-from somersault.flight._system import system
-from somersault.flight._takeoff import kinds, plans
-from somersault.flight._tape import course
+from somersault.flight import Batch
 from somersault.model import Model
 
 NAMES = [joint.name for joint in GYMNAST.joints]
@@ -307,10 +303,10 @@ MISTAKES = [
     (lambda: _elbow(damping=-1.0), "negative damping"),
     (lambda: _elbow(stiffness=np.nan), "stiffness"),
     (lambda: _elbow(stiffness="soft"), "stiffness"),
-    (lambda: _elbow(rest=0.1), "left_elbow"),
+    (lambda: _elbow(rest=0.1), "rest would do nothing"),
     (lambda: _elbow(pretension=1.0), "pretension"),
-    (lambda: _elbow(angle=0.1), "path"),
-    (lambda: _elbow(rate=0.1), "path"),
+    (lambda: _elbow(angle=0.1), "angle would do nothing"),
+    (lambda: _elbow(rate=0.1), "rate would do nothing"),
     (lambda: _elbow(times=[0.1]), "as many times as angles"),
     (lambda: _elbow(angles=[0.1, np.nan]), "left_elbow"),
     (lambda: _elbow(times=[], angles=[]), "as many times as angles"),
@@ -364,18 +360,15 @@ def test_the_tape_is_the_nominal_bodys() -> None:
     """Varied masses meet the torques of the body as it is: a tape knows nothing of them."""
     model = so.load(GYMNAST)
     soft = so.compliant(GYMNAST, ELBOW, 20.0, pose=0.0)
-    joints = plans(model, soft.joints)
-    chosen = system(model, kinds(joints), None, ("mass.torso",), None, True)
-    symbols = chosen.symbols
+    batch = Batch(model, soft, 0.2, bodies=("mass.torso",))
+    symbols = batch.system.symbols
     acting = ca.Function("acting", [symbols.x], [ca.vertcat(*symbols.torques)])
     at, torques = np.array([[0.05]]), []
     for mass in (model.bodies[1].mass, 20.0):
-        values = {**numbers(soft, joints), ("mass.torso",): mass}
-        begun = starts(chosen, soft, joints, values, 1)
-        state = chosen.start(begun.quaternion, begun.omega, begun.q, begun.u)
-        p = course(chosen, soft, joints, begun, 0.2).parameters(at)[:, 0]
-        assert p[0, symbols.changing] == mass
-        torques.append(np.array(acting(np.concatenate([state, at, p], 1)[0])).ravel())
+        begun = batch.begun({**batch.values, ("mass.torso",): mass})
+        p = begun.course.parameters(at)[:, 0]
+        assert p[0, symbols.layout.changing] == mass
+        torques.append(np.array(acting(np.concatenate([begun.rows, at, p], 1)[0])).ravel())
     light, heavy = torques
     np.testing.assert_array_equal(light, heavy)
     assert np.abs(light).max() > 0.01

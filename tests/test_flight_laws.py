@@ -139,7 +139,7 @@ def flow(stiffness: float, angle: float, time: float) -> np.ndarray:
     """
     held = layout(stiffness, angle, 0.1, tilt=0.0).start
     rests = {  # a pretension is a shift of the rest angle
-        p.joint.name: p.rest + p.pretension / p.stiffness for p in held.plans
+        p.joint.name: p.does.rest + p.does.pretension / p.does.stiffness for p in held.plans
     }
     nominal = np.array([0, 0, 0, SPIN, 0, angle, -angle, 0, 0])
 
@@ -274,7 +274,7 @@ def test_time_reversal() -> None:
     there = tumbling()
     q, u = (rows[-1] for rows in there._joints)
     joints = {
-        p.joint.name: JointTakeoff("sprung", a, rate=-r, stiffness=p.stiffness, rest=p.rest)
+        p.joint.name: JointTakeoff.sprung(a, -r, stiffness=p.does.stiffness, rest=p.does.rest)
         for p, a, r in zip(there.start.plans, q, u, strict=True)
     }
     end = there.landing

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import json
+from contextlib import nullcontext
 from importlib.resources import files
 from pathlib import Path
 
@@ -51,7 +52,9 @@ def test_a_gimbal_lock_is_given_up_and_named(
 def test_what_is_in_line(omega_n: float, locks: bool) -> None:
     takeoff = so.Takeoff(spin=RUDI["spin"], joints=JOINTS)
     soft = so.compliant("gymnast", takeoff, omega_n, pose=0.0, tape=False)
-    flight = so.fly("gymnast", soft, RUDI["landing"], samples=2, steps=3000, accuracy=1e-6)
+    breaks = pytest.warns(so.SomersaultWarning, match="gimbal lock") if locks else nullcontext()
+    with breaks:
+        flight = so.fly("gymnast", soft, RUDI["landing"], samples=2, steps=3000, accuracy=1e-6)
     assert flight.ended == ("too many steps" if locks else "duration")
     assert aligned(flight) == (LOCKED if locks else ())
 
@@ -77,11 +80,11 @@ def test_samples_and_turns_are_not_counted_as_steps() -> None:
 
 
 def test_flights_alone_and_together_are_given_up_alike() -> None:
-    alone, together = (inspect.signature(f).parameters["steps"] for f in (so.fly, so.ensemble))
+    alone, together = (inspect.signature(f).parameters["steps"] for f in (so.Maneuver, so.ensemble))
     assert alone.default == together.default == 100_000
 
 
-@pytest.mark.parametrize("steps", [0, -1, 1.5, True, "many", 10**10, None])
+@pytest.mark.parametrize("steps", [0, -1, 1.5, True, "many", 10**10])
 def test_steps_are_a_whole_number(steps: object) -> None:
     with pytest.raises(so.SomersaultError, match="steps must be a whole number"):
         so.fly("furrer", so.Takeoff(spin=8.0), steps=steps)  # type: ignore[arg-type]

@@ -157,7 +157,7 @@ def test_cat_turn_backwards_turns_back():
     made = cat_turn(legs={"hip_flexion": 1.5})
     end = made.fly(accuracy=SHARP).landing.quaternion
     start = so.Takeoff(quaternion=end.tolist(), angular_momentum=(0, 0, 0))
-    back = replace(made.reversed(), start=start).fly(accuracy=SHARP).landing.quaternion
+    back = made.reversed().from_takeoff(start).fly(accuracy=SHARP).landing.quaternion
     assert abs(back[0]) == pytest.approx(1, abs=1e-12)
     assert np.abs(back[1:]).max() < 1e-9
 
@@ -204,7 +204,8 @@ def test_what_is_left_oscillates_in_a_pike():
     moves = dict(made.keyframes)
     for joint in ("left_hip_flexion", "right_hip_flexion"):
         moves[joint] = [(end, 0.0), (end + 0.25, 1.8)]
-    flown = replace(made, keyframes=moves, duration=end + 10).fly(accuracy=1e-10)
+    piked = so.Maneuver.moves(made.model, moves, made.takeoff, end + 10)
+    flown = piked.fly(accuracy=1e-10)
     over = flown.times > end
     assert np.ptp(flown.dataset["somersault"].values[over]) > 10 * 2 * np.pi
     assert np.abs(flown.dataset["twist"].values[over] - 2 * np.pi).max() < 0.05

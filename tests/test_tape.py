@@ -9,24 +9,18 @@ import pytest
 from test_prescribed import GYMNAST, SECONDS, prescribed
 
 import somersault as so
-from somersault.flight._columns import numbers
-from somersault.flight._start import starts
-from somersault.flight._symbols import PATH
-from somersault.flight._system import system
-from somersault.flight._takeoff import kinds, plans
-from somersault.flight._tape import course
-from somersault.motion._path import TAPE_DEGREE
+from somersault.flight import Batch
+from somersault.flight._layout import PATH
+from somersault.motion import TAPE_DEGREE
 
 WRAP = so.named_pose("gymnast", "wrap")
 
 
 def taped(soft: so.Takeoff, times: np.ndarray) -> np.ndarray:
     """Torques (time, joints) of a compliant takeoff's tape."""
-    joints = plans(GYMNAST, soft.joints)
-    chosen = system(GYMNAST, kinds(joints), None, tape=True)
-    begun = starts(chosen, soft, joints, numbers(soft, joints), 1)
-    p = course(chosen, soft, joints, begun, SECONDS).parameters(times[None])[0]
-    own = p[:, PATH * len(joints) : chosen.symbols.changing]
+    batch = Batch(GYMNAST, soft, SECONDS)
+    p = batch.begun().course.parameters(times[None])[0]
+    own = p[:, PATH * len(batch.joints) : batch.system.layout.changing]
     s = times - own[:, 0]
     rows = own[:, 1:].reshape(len(times), -1, TAPE_DEGREE + 1)
     return (rows * s[:, None, None] ** np.arange(TAPE_DEGREE + 1)).sum(-1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -43,16 +44,17 @@ def run(chosen: argparse.Namespace) -> None:
     """Fly, write the history, print how it ended."""
     from somersault._core.datasets import check_history_file
     from somersault._core.errors import SomersaultError
-    from somersault.flight import fly
+    from somersault.flight import BROKEN, fly, why_broken
     from somersault.spec import read_spec
 
     if chosen.out is not None:
         check_history_file(chosen.out)
     spec = read_spec(chosen.spec)
-    flight = fly(spec.model, spec.takeoff, spec.duration, **spec.options)
-    if flight.ended in ("too many steps", "not finite"):
+    with warnings.catch_warnings(record=True):
+        flight = fly(spec.model, spec.takeoff, spec.duration, **spec.options)
+    if flight.ended in BROKEN:
         raise SomersaultError(
-            f"the flight broke off at {flight.landing.time:g} s: {_why_broken(flight)}"
+            f"the flight broke off at {flight.landing.time:g} s: {why_broken(flight)}"
         )
     if chosen.out is not None:
         flight.save(chosen.out)
@@ -60,23 +62,6 @@ def run(chosen: argparse.Namespace) -> None:
         print(json.dumps(_record(flight)))
     else:
         print("\n".join(_page(flight)))
-
-
-def _why_broken(flight: Flight) -> str:
-    from somersault.flight._lock import aligned
-
-    if flight.ended == "not finite":
-        return "its motion is no longer finite; a spring, damper or move is too stiff or fast"
-    given_up = f"it had taken {flight.steps} steps of the integration"
-    if joints := aligned(flight):
-        return (
-            f"{given_up}, and {' and '.join(joints)} have come into line there (gimbal lock), "
-            "which no step gets past; make them stiffer, or take the gains in another pose"
-        )
-    return (
-        f"{given_up}; a spring or damper is too stiff, or the accuracy too fine: make them "
-        "softer or coarser, or give more steps"
-    )
 
 
 def _record(flight: Flight) -> dict[str, Any]:

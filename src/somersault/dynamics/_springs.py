@@ -39,21 +39,36 @@ def torques(
     """What springs and dampers do at each joint speed, N m (N for a slide)."""
     result: list[Scalar] = []
     for joint in model.joints:
-        stretch = _stretch(model, joint, q, symbols)
-        own = list(speeds[model.speed_slice(joint.name)])
-        spring = scale(_number(joint, "stiffness", symbols), stretch)
-        damper = scale(_number(joint, "damping", symbols), own)
-        result += [sub(0.0, add(s, d)) for s, d in zip(spring, damper, strict=True)]
+        numbers = (_number(joint, kind, symbols) for kind in _KINDS)
+        own = q[model.coordinate_slice(joint.name)]
+        result += spring_torques(joint, own, speeds[model.speed_slice(joint.name)], *numbers)
     return result
+
+
+def spring_torques(
+    joint: Joint,
+    q: Sequence[Scalar],
+    speeds: Sequence[Scalar],
+    stiffness: Scalar,
+    rest: Scalar,
+    damping: Scalar,
+) -> list[Scalar]:
+    """What one joint's spring and damper do at each of its speeds, N m (N for a slide).
+
+    `q` and `speeds` are the joint's own.
+    """
+    spring = scale(stiffness, _stretch(joint, q, stiffness, rest))
+    damper = scale(damping, list(speeds))
+    return [sub(0.0, add(s, d)) for s, d in zip(spring, damper, strict=True)]
 
 
 def energy(model: Model, q: Sequence[Scalar], symbols: Mapping[str, Any]) -> Scalar:
     """½ k (stretch)², summed, in J."""
     result: Scalar = 0.0
     for joint in model.joints:
-        stretch = _stretch(model, joint, q, symbols)
-        half = mul(0.5, _number(joint, "stiffness", symbols))
-        result = add(result, mul(half, dot(stretch, stretch)))
+        stiffness, rest = (_number(joint, kind, symbols) for kind in ("stiffness", "rest"))
+        stretch = _stretch(joint, q[model.coordinate_slice(joint.name)], stiffness, rest)
+        result = add(result, mul(mul(0.5, stiffness), dot(stretch, stretch)))
     return result
 
 
@@ -61,14 +76,13 @@ def _number(joint: Joint, kind: str, symbols: Mapping[str, Any]) -> Scalar:
     return symbols.get(f"{kind}.{joint.name}", float(getattr(joint, kind)))
 
 
-def _stretch(model: Model, joint: Joint, q: Sequence[Scalar], symbols: Mapping[str, Any]) -> Vec:
+def _stretch(joint: Joint, q: Sequence[Scalar], stiffness: Scalar, rest: Scalar) -> Vec:
     """How far the joint is from rest, along each of its speeds."""
-    if is_zero(_number(joint, "stiffness", symbols)):
+    if is_zero(stiffness):
         return [0.0] * joint.speeds
-    own = q[model.coordinate_slice(joint.name)]
     if joint.kind != "ball":
-        return [sub(own[0], _number(joint, "rest", symbols))]
-    return _rotation_vector(own)
+        return [sub(q[0], rest)]
+    return _rotation_vector(q)
 
 
 def _rotation_vector(quaternion: Sequence[Any]) -> Vec:

@@ -16,7 +16,12 @@ from somersault.ensembles._plan import MOST_FLIGHTS, MOST_SEED, Plan, check
 from somersault.ensembles._report import Report
 from somersault.ensembles._targets import unit
 from somersault.ensembles._vary import Vary
-from somersault.flight._fly import STEPS, Event, check_ending, flight_time
+from somersault.flight._maneuver import (
+    STEPS,
+    Event,
+    check_limits_of_flight,
+    flight_time,
+)
 from somersault.flight._takeoff import Takeoff, require_takeoff
 from somersault.model import Model, load
 
@@ -130,7 +135,7 @@ def plan(
 ) -> Plan:  # fmt: skip
     """What `ensemble` would fly; SomersaultError for what does not fit."""
     duration = flight_time(duration)
-    check_ending(accuracy, until, steps)
+    check_limits_of_flight(accuracy, until, steps)
     takeoff = Takeoff() if takeoff is None else takeoff
     require_takeoff(takeoff)
     if not isinstance(report, Report):

@@ -17,17 +17,14 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
-from somersault.dynamics._tree import parameter_value
 from somersault.ensembles import _report, _vary
 from somersault.ensembles._report import Report
 from somersault.ensembles._targets import Target, body_names, check_apart, moved, targets
 from somersault.ensembles._vary import Vary
-from somersault.flight._columns import Name, numbers, sound
-from somersault.flight._fly import TOLERANCE_PER_ACCURACY
-from somersault.flight._start import starts
-from somersault.flight._system import System, system
-from somersault.flight._takeoff import JointPlan, Takeoff, kinds, plans
-from somersault.flight._tape import course as course_of
+from somersault.flight._batch import Batch
+from somersault.flight._system import System
+from somersault.flight._takeoff import Takeoff
+from somersault.flight._values import Name
 from somersault.model import Model
 
 SAMPLE = "sample"
@@ -63,13 +60,8 @@ class Plan:
         return {name: getattr(self, name) for name in self.__dataclass_fields__}
 
     @cached_property
-    def joints(self) -> tuple[JointPlan, ...]:
-        """What each joint does."""
-        return plans(self.model, self.takeoff.joints)
-
-    @cached_property
-    def _nominal(self) -> dict[Name, float | Array]:
-        return numbers(self.takeoff, self.joints)
+    def _nominal(self) -> Mapping[Name, float | Array]:
+        return Batch(self.model, self.takeoff, self.duration).values
 
     @cached_property
     def targets(self) -> dict[str, tuple[Target, ...]]:
@@ -85,16 +77,17 @@ class Plan:
         return body_names(self.targets)
 
     @cached_property
-    def system(self) -> System:
-        """The equations, shared with every plan that has the same."""
-        return system(
-            self.model,
-            kinds(self.joints),
-            self.until,
-            self.bodies,
+    def batch(self) -> Batch:
+        """The flights, which share their equations."""
+        return Batch(
+            self.model, self.takeoff, self.duration, self.until, self.bodies,
             tuple(self.report.extremes),
-            self.takeoff.tape is not None,
-        )
+        )  # fmt: skip
+
+    @property
+    def system(self) -> System:
+        """Their equations."""
+        return self.batch.system
 
     @property
     def dims(self) -> dict[str, int]:
@@ -109,10 +102,10 @@ class Plan:
         """How many flights."""
         return math.prod(self.dims.values())
 
-    @cached_property
-    def values(self) -> dict[Name, float | Array]:
+    @property
+    def values(self) -> Mapping[Name, float | Array]:
         """The numbers of the takeoff before anything is varied."""
-        return {**self._nominal, **{(n,): parameter_value(self.model, n) for n in self.bodies}}
+        return self.batch.values
 
     def coordinate(self, name: str, places: Array) -> Array:
         """Values of a varied quantity at places along its dimension."""
@@ -156,37 +149,34 @@ class Plan:
     @cached_property
     def _together(self) -> int:
         chosen, report = self.system, self.report
-        rows = 3 + 2 * len(report.extremes) + chosen.state
+        rows = 3 + 2 * len(report.extremes) + chosen.layout.state
         samples = report.samples if report.history else 0
-        doubles = 12 * (rows + chosen.parameters)
-        doubles += samples * (3 * rows + 2 * chosen.parameters)
+        doubles = 12 * (rows + chosen.layout.parameters)
+        doubles += samples * (3 * rows + 2 * chosen.layout.parameters)
         moved = {target.name[0] for group in self.targets.values() for target in group}
         if moved & {"times", "angles", "angle"}:  # each flight has paths of its own, and a tape
-            one = starts(chosen, self.takeoff, self.joints, self.values, 1)
-            course = course_of(chosen, self.takeoff, self.joints, one, self.duration)
-            doubles += 6 * course.knots.shape[1] * chosen.symbols.changing
+            knots = self.batch.begun().course.knots
+            doubles += 6 * knots.shape[1] * chosen.layout.changing
         return min(_TOGETHER, max(_TOGETHER_BYTES // (8 * doubles), 64))
 
     def _fly(self, given: Mapping[str, Array], count: int) -> dict[str, Array]:
         """The variables of flights whose varied quantities are `given`."""
         chosen = self.system
         values = moved(self.values, self.vary, self.targets, given)
-        good = sound(self.joints, values, count)
+        good = self.batch.sound(values, count)
         if not good.all():  # stand-ins, which are struck out again
             nominal = self.values
             values = {
                 n: np.where(good, x, nominal[n]) if isinstance(x, np.ndarray) else x
                 for n, x in values.items()
             }
-        begun = starts(chosen, self.takeoff, self.joints, values, count)
-        course = course_of(chosen, self.takeoff, self.joints, begun, self.duration)
-        first = chosen.start(begun.quaternion, begun.omega, begun.q, begun.u)
-        states, watched = np.split(first, [chosen.state], 1)
-        watched[:] = _report.first_watched(self.report, chosen, begun.angles, states, course)
+        begun = self.batch.begun(values, count)
+        angles, course = begun.starts.angles, begun.course
+        states, watched = np.split(begun.rows, [chosen.layout.state], 1)
+        watched[:] = _report.first_watched(self.report, chosen, angles, states, course)
         times = self.report.times(self.duration)
-        tolerance = self.accuracy * TOLERANCE_PER_ACCURACY
-        found = course.solve(first, times, tolerance, self.steps)
-        return _report.told(self.report, chosen, course, found, begun.angles, good, times)
+        found = begun.solve(times, self.accuracy, self.steps)
+        return _report.told(self.report, chosen, course, found, angles, good, times)
 
     @cached_property
     def specification(self) -> dict[str, Any]:
@@ -317,7 +307,7 @@ def _check_edges(plan: Plan) -> None:
         ends = np.array([vary.grid.min(), vary.grid.max()])
         one = {name: vary}
         values = moved(plan.values, one, {name: plan.targets[name]}, {name: ends})
-        good = sound(plan.joints, values, 2)
+        good = plan.batch.sound(values, 2)
         if not good.all():
             raise SomersaultError(
                 f"vary.{name}.values has {ends[~good][0]:g}, with which there is no takeoff "

@@ -141,7 +141,9 @@ def _units(system: System) -> dict[str, str]:
 def reader(names: tuple[str, ...], system: System) -> Kernel:
     """The quantities of (angles, state, time, parameters), compiled; once for a system."""
     axes = system.model.axes
-    return Kernel(values(names, system.quantities, system.state, system.parameters, axes))
+    return Kernel(
+        values(names, system.quantities, system.layout.state, system.layout.parameters, axes)
+    )
 
 
 def first_watched(

@@ -12,7 +12,8 @@ from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.dynamics._tree import parameter_names
 from somersault.ensembles._vary import Vary
-from somersault.flight._columns import Name, Numbers
+from somersault.flight._values import Name
+from somersault.flight._values import Values as Numbers
 from somersault.model import Model
 from somersault.model._mirror import sides
 

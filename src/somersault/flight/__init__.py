@@ -1,12 +1,14 @@
 """Takeoff, flight, landing."""
 
 from somersault.flight._ballistic import BallisticPath
+from somersault.flight._batch import Batch, Begun
+from somersault.flight._broken import BROKEN, why_broken
 from somersault.flight._compliance import compliant, off_nominal, with_momentum
 from somersault.flight._deviation import deviated_flight
 from somersault.flight._flight import Flight, Landing
 from somersault.flight._fly import fly
+from somersault.flight._maneuver import Maneuver
 from somersault.flight._maneuvers import (
-    Maneuver,
     arm_tilt,
     cat_turn,
     hula,
@@ -29,12 +31,16 @@ from somersault.flight._swing import (
     released,
     swing,
 )
-from somersault.flight._takeoff import JointTakeoff, Takeoff
+from somersault.flight._takeoff import Takeoff
 from somersault.flight._work import joint_power, joint_work
+from somersault.flight.behaviours import JointTakeoff
 
 __all__ = [
+    "BROKEN",
     "GRAVITY",
     "BallisticPath",
+    "Batch",
+    "Begun",
     "Flight",
     "JointTakeoff",
     "Landing",
@@ -62,5 +68,6 @@ __all__ = [
     "swing",
     "torque_twist",
     "twist_time",
+    "why_broken",
     "with_momentum",
 ]

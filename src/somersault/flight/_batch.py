@@ -3,28 +3,32 @@
     plans -> kinds -> system -> starts -> course -> solve
 
 is put together here and nowhere else. Flights of a batch share their equations and differ in the
-numbers of the takeoff (`_columns`), each of which is one for all or an array over the flights.
+numbers of the takeoff (`_values`), each of which is one for all or an array over the flights.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from somersault._core.array import Array
 from somersault.dynamics._tree import parameter_value
 from somersault.engine import MOST_STEPS, Solution
-from somersault.flight._columns import Name, Numbers, numbers, sound
 from somersault.flight._course import Course
-from somersault.flight._start import Starts, starts
+from somersault.flight._plans import numbers, plans, sound
+from somersault.flight._start import Start, Starts, start, starts
 from somersault.flight._system import System, system
-from somersault.flight._takeoff import JointPlan, Takeoff, kinds, plans
-from somersault.flight._tape import course
+from somersault.flight._takeoff import Takeoff
+from somersault.flight._tape import Tape, recorded, recorded_each
+from somersault.flight._values import Name, Values
+from somersault.flight.behaviours import JointPlan, kinds
 from somersault.model import Model
+from somersault.motion import Path
 
+_OF_JOINTS = ("times", "angles", "angle", "factor", "offset")  # what a nominal flight may vary
 TOLERANCE_PER_ACCURACY = 1 / 20  # measured: eight somersaults add up about ten step errors
 
 
@@ -46,7 +50,7 @@ class Batch:
     @cached_property
     def joints(self) -> tuple[JointPlan, ...]:
         """What each joint does."""
-        return plans(self.model, self.takeoff.joints)
+        return plans(self.model, self.takeoff)
 
     @cached_property
     def system(self) -> System:
@@ -62,11 +66,23 @@ class Batch:
             values[(name,)] = parameter_value(self.model, name)
         return values
 
-    def sound(self, values: Numbers, count: int) -> Array:
+    @cached_property
+    def nominal(self) -> Batch:
+        """The flights whose joint torques the motor tape records."""
+        assert self.takeoff.tape is not None
+        tape = tuple(float(x) for x in self.takeoff.tape)
+        return _nominal(self.model, self.joints, tape, self.duration)
+
+    @cached_property
+    def recording(self) -> Tape:
+        """The torques of this batch's one flight, as its takeoff gives it."""
+        return recorded(self)
+
+    def sound(self, values: Values, count: int) -> Array:
         """Whether each of `count` flights is one that could be asked for by itself, (count,)."""
         return sound(self.joints, values, count)
 
-    def begun(self, values: Numbers | None = None, count: int = 1) -> Begun:
+    def begun(self, values: Values | None = None, count: int = 1) -> Begun:
         """`count` flights whose numbers are `values`, by default the takeoff's own."""
         given = self.values if values is None else values
         return Begun(self, starts(self.system, self.takeoff, self.joints, given, count))
@@ -80,10 +96,28 @@ class Begun:
     starts: Starts
 
     @cached_property
+    def start(self) -> Start:
+        """The takeoff, of one flight."""
+        batch = self.batch
+        return start(batch.system, batch.takeoff, batch.joints, self.starts)
+
+    @cached_property
     def course(self) -> Course:
         """Paths, motor tapes and lasting parameters."""
-        batch = self.batch
-        return course(batch.system, batch.takeoff, batch.joints, self.starts, batch.duration)
+        batch, starts = self.batch, self.starts
+        tape = None if batch.takeoff.tape is None else self._tape
+        return Course(batch.system, batch.joints, starts, batch.duration, tape)
+
+    @property
+    def _tape(self) -> Path:
+        """The motor tape of each flight, or one for all where they are alike."""
+        nominal, values = self.batch.nominal, self.starts.values
+        tape = nominal.recording
+        moved = {n: x for n, x in values.items() if n in nominal.values and n[0] in _OF_JOINTS}
+        if any(isinstance(x, np.ndarray) for x in moved.values()):
+            tape = recorded_each(nominal, moved, len(self.starts.q), tape)
+        played = [slot.joint.name for slot in self.batch.system.layout.slots if slot.tape]
+        return tape.path([self.batch.model.speed_slice(name).start for name in played])
 
     @cached_property
     def rows(self) -> Array:
@@ -96,3 +130,12 @@ class Begun:
         tolerance = accuracy * TOLERANCE_PER_ACCURACY
         with np.errstate(over="ignore", invalid="ignore"):
             return self.course.solve(self.rows, samples, tolerance, most_steps)
+
+
+@lru_cache(maxsize=64)
+def _nominal(
+    model: Model, joints: tuple[JointPlan, ...], tape: tuple[float, ...], duration: float
+) -> Batch:
+    """The batch of a nominal flight, with the recording that it keeps."""
+    does = {plan.joint.name: plan.does.nominal() for plan in joints}
+    return Batch(model, Takeoff(angular_momentum=tape, joints=does), duration)

@@ -19,21 +19,20 @@ from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 from somersault.attitude import matrix_from_quaternion
 from somersault.dynamics import Equations
-from somersault.flight._columns import rotation_vector
-from somersault.flight._start import start
-from somersault.flight._system import system
-from somersault.flight._takeoff import (
+from somersault.flight._batch import Batch
+from somersault.flight._start import Start
+from somersault.flight._takeoff import Takeoff, require_takeoff
+from somersault.flight.behaviours import (
+    Coupled,
     JointPlan,
     JointTakeoff,
-    Takeoff,
-    kinds,
-    plans,
-    require_takeoff,
+    Locked,
+    Prescribed,
+    softened,
 )
-from somersault.model import Model, load, named_pose
-from somersault.model._pose import pose as posed
-from somersault.model.athlete._poses import pose_names
-from somersault.motion._path import moves, value
+from somersault.model import Model, load, named_pose, pose_names
+from somersault.model import pose as posed
+from somersault.motion import value
 
 _FOLLOWING = "following"
 
@@ -61,12 +60,13 @@ def compliant(
     prescribed.
     """
     model = load(model)
-    joints = _joints(model, takeoff)
+    begun = _begun(model, takeoff)
+    joints = begun.plans
     truth("tape", tape)
     for what, given in (("stop_stiffness", stop_stiffness), ("stop_damping", stop_damping)):
         if number(what, given) < 0:
             raise SomersaultError(f"{what} must not be negative, and is {given:g}")
-    on_path = [plan for plan in joints if plan.motion == "prescribed"]
+    on_path = [(plan.joint, plan.does) for plan in joints if isinstance(plan.does, Prescribed)]
     if not on_path:
         raise SomersaultError("nothing is prescribed in this takeoff, so nothing can be compliant")
     omega_n = number("natural_frequency", natural_frequency)
@@ -76,18 +76,16 @@ def compliant(
             f"natural_frequency must be positive and damping_ratio not negative, and they are "
             f"{omega_n:g} and {zeta:g}"
         )
-    begun = start(system(model, kinds(joints), None), takeoff, joints)
     inertias = np.ones(len(model.speeds))
     following = isinstance(pose, str) and pose == _FOLLOWING
     if not following:
-        inertias = Equations(model).outboard_inertia(_pose(model, joints, pose))
-    setups = dict(_by_name(joints))
-    for plan in on_path:
-        inertia = float(inertias[model.speed_slice(plan.joint.name).start])
-        stopped = plan.joint.limits is not None
-        setups[plan.joint.name] = JointTakeoff(
-            "compliant", times=plan.times, angles=plan.angles, path=plan.given,
-            stiffness=omega_n**2 * inertia, damping=2 * zeta * omega_n * inertia,
+        inertias = Equations(model).outboard_inertia(_pose(model, begun, pose))
+    setups = _others(joints)
+    for joint, does in on_path:
+        inertia = float(inertias[model.speed_slice(joint.name).start])
+        stopped = joint.limits is not None
+        setups[joint.name] = softened(
+            does, stiffness=omega_n**2 * inertia, damping=2 * zeta * omega_n * inertia,
             following=following, stop_stiffness=stop_stiffness if stopped else 0.0,
             stop_damping=stop_damping if stopped else 0.0,
         )  # fmt: skip
@@ -105,11 +103,7 @@ def with_momentum(model: str | Model, takeoff: Takeoff) -> Takeoff:
     Then attitude can be varied with the momentum staying where it is; with rates the whole
     flight would turn along.
     """
-    model = load(model)
-    joints = _joints(model, takeoff)
-    return _with_momentum(
-        takeoff, start(system(model, kinds(joints), None), takeoff, joints).momentum
-    )
+    return _with_momentum(takeoff, _begun(load(model), takeoff).momentum)
 
 
 def off_nominal(
@@ -134,9 +128,9 @@ def off_nominal(
     return replace(begun, **off)
 
 
-def _joints(model: Model, takeoff: Takeoff) -> tuple[JointPlan, ...]:
+def _begun(model: Model, takeoff: Takeoff) -> Start:
     require_takeoff(takeoff)
-    return plans(model, takeoff.joints)
+    return Batch(model, takeoff, 1.0).begun().start
 
 
 def _with_momentum(takeoff: Takeoff, momentum: Array) -> Takeoff:
@@ -146,25 +140,21 @@ def _with_momentum(takeoff: Takeoff, momentum: Array) -> Takeoff:
     )  # fmt: skip
 
 
-def _by_name(joints: tuple[JointPlan, ...]) -> list[tuple[str, JointTakeoff]]:
-    """What every other joint does, spelled out."""
-    found = []
+def _others(joints: tuple[JointPlan, ...]) -> dict[str, JointTakeoff]:
+    """What every joint does that is not prescribed."""
+    others: dict[str, JointTakeoff] = {}
     for plan in joints:
-        if plan.motion == "locked":
-            ball = plan.joint.kind == "ball"
-            angle = rotation_vector(plan) if ball else plan.position[0]
-            found.append((plan.joint.name, JointTakeoff("locked", angle=angle)))
-        elif plan.motion != "prescribed":
+        if isinstance(plan.does, Locked | Coupled):
+            others[plan.joint.name] = plan.does
+        elif not isinstance(plan.does, Prescribed):
             raise SomersaultError(
-                f"joint {plan.joint.name} is {plan.motion}; beside compliant joints there are "
+                f"joint {plan.joint.name} is {plan.does.motion}; beside compliant joints there are "
                 "prescribed and locked ones"
             )
-    return found
+    return others
 
 
-def _pose(
-    model: Model, joints: tuple[JointPlan, ...], pose: Mapping[str, float] | float | str
-) -> Array:
+def _pose(model: Model, start: Start, pose: Mapping[str, float] | float | str) -> Array:
     """Joint coordinates (coordinates,) of a pose by name, or of the motion at a time."""
     if isinstance(pose, str):
         words = pose_names(model)
@@ -180,17 +170,18 @@ def _pose(
             number(f"pose {name}", angle)
         return posed(model, pose)
     time = number("pose", pose)
-    values: list[float] = []
-    for plan in joints:
-        if plan.motion == "prescribed":
-            whole = plan.given or moves(np.array(plan.times), np.array(plan.angles))
+    at = {}
+    for plan in start.plans:
+        if isinstance(plan.does, Prescribed):
+            whole = plan.does.whole()
             first, last = whole.known
             if not first <= time <= last:
                 raise SomersaultError(
                     f"pose {time:g} s is not in the recording of joint {plan.joint.name}, from "
                     f"{first:g} to {last:g} s; give a time of the motion"
                 )
-            values.append(value(whole, time)[0])
-        else:
-            values += plan.position
-    return np.array(values)
+            at[plan.joint.name] = value(whole, time)[0]
+    q = start.q.copy()
+    for name, angle in at.items():
+        q[model.coordinate_slice(name)] = angle
+    return q

@@ -1,8 +1,8 @@
-"""Flights from one knot of their prescribed paths to the next.
+"""Flights from one knot of their paths to the next.
 
-Between knots every prescribed joint follows one polynomial, whose coefficients are parameters
-of the equations, as are those of the motor tape; no step of the integration goes across a knot.
-Without prescribed joints a flight is one piece.
+Between knots every path is one polynomial, whose coefficients are parameters of the equations, as
+are those of the motor tape; no step of the integration goes across a knot. Without paths a flight
+is one piece.
 """
 
 from __future__ import annotations
@@ -13,11 +13,10 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault.engine import MOST_STEPS, Pieces, Solution
-from somersault.flight._columns import Name, Numbers, path, row
 from somersault.flight._start import Starts, momentum
 from somersault.flight._system import System
-from somersault.flight._takeoff import JointPlan
-from somersault.motion._path import Path
+from somersault.flight.behaviours import JointPlan
+from somersault.motion import Path
 
 
 class Course:
@@ -36,39 +35,31 @@ class Course:
     ) -> None:
         self.duration = duration
         self._system, self._plans = system, plans
-        paths = {
-            plan.joint.name: path(plan, begun.values, len(begun.q))
+        paths = [
+            (plan.joint.name, path)
             for plan in plans
-            if plan.on_path
-        }
-        for name, whole in paths.items():
-            whole.check_known(name, duration)
-        self._changing = [*paths.values(), *([] if tape is None else [tape])]
+            for path in plan.does.paths(plan.joint, begun.values, len(begun.q))
+        ]
+        for name, path in paths:
+            path.check_known(name, duration)
+        self._changing = [path for _, path in paths] + ([] if tape is None else [tape])
         self._tape = tape
         self._still = self._lasting(begun)
 
     def _lasting(self, begun: Starts) -> Array:
         """Parameters that stay as they are, (N, …)."""
-        count, place = len(begun.q), 0
+        model = self._system.model
         parts = [begun.bodies]
         for plan in self._plans:
-            if plan.motion == "compliant":
-                names: list[Name] = [(g, plan.joint.name) for g in ("stiffness", "damping")]
-                parts.append(row(begun.values, names, count))
-            elif plan.motion == "locked":
-                parts.append(begun.q[:, place : place + plan.joint.coordinates])
-            elif plan.motion != "prescribed":
-                parts.append(_spring(plan, begun.values, count))
-            if plan.stops:
-                parts.append(np.tile(plan.stops, (count, 1)))
-            place += plan.joint.coordinates
-        if self._system.symbols.bound:
+            where = model.coordinate_slice(plan.joint.name)
+            parts.append(plan.does.lasting(plan.joint, begun.values, begun.q[:, where]))
+        if self._system.layout.bound:
             parts.append(momentum(self._system, begun))
         return np.concatenate(parts, 1)
 
     @cached_property
     def knots(self) -> Array:
-        """The times from 0 to the end between which all is smooth, (N or 1, K).
+        """0, all knots that the flights go past, and the duration, (N or 1, K).
 
         Where flights have knots of their own some intervals have no length.
         """
@@ -103,15 +94,3 @@ class Course:
         return self._system.integrator.solve(
             first, self._still, samples, tolerance, pieces=pieces, most_steps=most_steps,
         )  # fmt: skip
-
-
-def _spring(plan: JointPlan, values: Numbers, count: int) -> Array:
-    """Stiffness, rest, damping and pretension of a joint that moves freely, (count, 4)."""
-    name = plan.joint.name
-    own = np.empty((count, 4))
-    own[:, 0] = values.get(("stiffness", name), 0.0)
-    held = values[("angle", name)] if plan.hold else plan.rest
-    own[:, 1] = values.get(("rest", name), held)
-    own[:, 2] = values[("damping", name)]
-    own[:, 3] = values.get(("pretension", name), 0.0)
-    return own

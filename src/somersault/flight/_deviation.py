@@ -14,7 +14,8 @@ from somersault._core.numbers import number
 from somersault.attitude import quaternion_from_matrix, quaternion_product
 from somersault.flight._flight import Flight
 from somersault.flight._fly import fly
-from somersault.flight._takeoff import JointTakeoff, Takeoff
+from somersault.flight._takeoff import Takeoff
+from somersault.flight.behaviours import Free, JointTakeoff, Locked, Sprung
 from somersault.model import Joint
 from somersault.model._pose import pose, spread
 from somersault.stability import Spin
@@ -102,16 +103,16 @@ def _setup(
     k = float(springs.get(joint.name, 0.0)) * rate**2 * inertia
     b = float(dampers.get(joint.name, 0.0)) * abs(rate) * inertia
     if joint.kind == "ball":
-        return JointTakeoff("locked" if speed in locked else "sprung", stiffness=k, damping=b)
+        return Locked() if speed in locked else Sprung(stiffness=k, damping=b)
     angle = float(moved[spin.model.coordinate_slice(joint.name)][0])
     if joint.name in locked:
-        return JointTakeoff("locked", angle=angle)
+        return Locked(angle)
     # Pretension is for the spin's own pose, wherever the deviation has moved the joint.
     held = spin.holding_torques[speed] * rate**2
     at = float(spin.pose[spin.model.coordinate_slice(joint.name)][0])
     if k == 0.0:
-        return JointTakeoff("free", angle=angle, damping=b)
-    return JointTakeoff("sprung", angle=angle, stiffness=k, damping=b, rest=at + held / k)
+        return Free(angle, damping=b)
+    return Sprung(angle, stiffness=k, damping=b, rest=at + held / k)
 
 
 def _attitude(spin: Spin, turn: Array) -> Array:

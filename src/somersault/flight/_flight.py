@@ -48,6 +48,7 @@ class Flight:
 
     system: System
     start: Start
+    position: Array
     velocity: Array
     gravity: Array
     _moments: Array
@@ -95,9 +96,9 @@ class Flight:
 
     @cached_property
     def centre_of_mass(self) -> Array:
-        """Of the whole body in inertial axes, (time, 3), m; at takeoff it is at the origin."""
+        """Of the whole body in inertial axes, (time, 3), m."""
         fallen = 0.5 * self.times[:, None] ** 2 * self.gravity
-        return self.times[:, None] * self.velocity + fallen
+        return self.position + self.times[:, None] * self.velocity + fallen
 
     @cached_property
     def times(self) -> Array:
@@ -201,10 +202,8 @@ class Flight:
         q, _ = self._joints
         total = np.zeros(len(q))
         for plan in self.start.plans:
-            if plan.motion == "sprung":
-                own = q[:, self.system.model.coordinate_slice(plan.joint.name)]
-                stretch = _stretch(own, plan.rest)
-                total += 0.5 * plan.stiffness * stretch**2 - plan.pretension * stretch
+            where = self.system.model.coordinate_slice(plan.joint.name)
+            total += plan.does.energy(plan.joint, q[:, where])
         return total
 
     @property
@@ -217,7 +216,7 @@ class Flight:
     @property
     def conservative(self) -> bool:
         """Whether energy is kept: nothing damped, nothing driven."""
-        return not any(p.damping or p.on_path or p.stops for p in self.start.plans)
+        return all(plan.does.conservative for plan in self.start.plans)
 
     @property
     def energy_drift(self) -> float | None:
@@ -306,11 +305,3 @@ def _from(path: Array, given: Array) -> Array:
         if choice is path or np.abs(turned[0] - given).sum() < np.abs(best[0] - given).sum():
             best = turned
     return best
-
-
-def _stretch(q: Array, rest: float) -> Array:
-    """How far a joint's coordinates (…, 1) or (…, 4) are from rest, (…)."""
-    if q.shape[-1] == 1:
-        return q[:, 0] - rest
-    length = np.linalg.norm(q[:, 1:], axis=1)
-    return 2 * np.arctan2(length, np.abs(q[:, 0]))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from somersault.flight._flight import Flight
-from somersault.flight._symbols import moves_freely
 
 _IN_LINE = 1e-3  # of a mass matrix with a unit diagonal: hinges 0.3 rad apart have 0.05
 _TAKES_PART = 0.1  # of the direction that has no inertia left
@@ -19,9 +18,9 @@ def aligned(flight: Flight) -> tuple[str, ...]:
     model = flight.system.model
     free = [
         place
-        for joint, kind in zip(model.joints, flight.system.kinds, strict=True)
-        if moves_freely(kind)
-        for place in range(*model.speed_slice(joint.name).indices(len(model.speeds)))
+        for slot in flight.system.layout.slots
+        if slot.kind.in_state
+        for place in range(*model.speed_slice(slot.joint.name).indices(len(model.speeds)))
     ]
     if len(free) < 2:
         return ()

@@ -10,8 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -22,13 +20,10 @@ from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 from somersault.attitude import in_sequence
 from somersault.dynamics import Equations
-from somersault.flight._flight import Flight
-from somersault.flight._fly import fly
-from somersault.flight._prescribed import prescribed
+from somersault.flight._maneuver import Maneuver
 from somersault.flight._takeoff import Takeoff
 from somersault.model import Model, load, named_pose
-from somersault.model._pose import pose as posed
-from somersault.motion._motion import Motion
+from somersault.model import pose as posed
 
 Keyframes = Mapping[str, Sequence[tuple[float, float]]]
 _SIDES = ("left", "right")
@@ -36,52 +31,6 @@ _LEGS_APART = {"hip_abduction": math.pi / 4}
 _MOST_CYCLES = 1_000  # or twists
 _LONGEST = 20.0  # s: whatever has not twisted until then will not
 _FINE = 1e-13  # s
-
-
-@dataclass(frozen=True, eq=False)
-class Maneuver:
-    """What a model does in the air: keyframes of every joint that moves, and how it takes off.
-
-    `keyframes` are lists of (s, rad) by joint, as `Motion.moves` takes them: smooth moves, at rest
-    at each. `start` is a takeoff without joints; `duration` is in s.
-    """
-
-    model: Model
-    keyframes: Keyframes
-    start: Takeoff
-    duration: float
-
-    @cached_property
-    def motion(self) -> Motion:
-        """The joints' paths; SomersaultError for what the model's joints cannot do."""
-        return Motion.moves(self.model, self.keyframes)
-
-    @cached_property
-    def takeoff(self) -> Takeoff:
-        """The whole takeoff, its joints prescribed."""
-        return replace(self.start, joints=prescribed(self.model, self.motion))
-
-    def fly(self, **options: Any) -> Flight:
-        """The flight, for the whole duration; `options` are those of `somersault.fly`."""
-        return fly(self.model, self.takeoff, self.duration, **options)
-
-    def scaled(self, factor: float) -> Maneuver:
-        """The same moves in `factor` times their time; it takes off as before.
-
-        Raises SomersaultError unless the factor is positive.
-        """
-        if number("factor", factor) <= 0:
-            raise SomersaultError(f"factor {factor:g} turns time back or stops it; give one over 0")
-        return self._with(lambda rows: [(factor * t, q) for t, q in rows], factor * self.duration)
-
-    def reversed(self) -> Maneuver:
-        """The same moves from the last to the first; it takes off as before."""
-        end = self.duration
-        return self._with(lambda rows: [(end - t, q) for t, q in reversed(rows)], end)
-
-    def _with(self, change: Any, duration: float) -> Maneuver:
-        rows = {name: change(list(row)) for name, row in self.keyframes.items()}
-        return replace(self, keyframes=rows, duration=duration)
 
 
 def inertia_change(
@@ -111,7 +60,9 @@ def inertia_change(
     begin, move = _seconds(begin=begin), _seconds(move=move)
     h = number("spin", spin) * _inertia(body, first)[axis - 1, axis - 1] * np.eye(3)[axis - 1]
     moves = _through([(begin, first), (begin + move, last)])
-    return Maneuver(body, moves, Takeoff(angular_momentum=h.tolist()), _seconds(duration=duration))
+    return Maneuver.moves(
+        body, moves, Takeoff(angular_momentum=h.tolist()), _seconds(duration=duration)
+    )
 
 
 def cat_turn(
@@ -148,7 +99,7 @@ def cat_turn(
     span = _seconds(move=move)
     moves = _through([(span * k, pose) for k, pose in enumerate(row)])
     still = Takeoff(angular_momentum=(0.0, 0.0, 0.0))
-    return Maneuver(body, moves, still, span * (len(row) - 1))
+    return Maneuver.moves(body, moves, still, span * (len(row) - 1))
 
 
 def arm_tilt(
@@ -183,13 +134,13 @@ def arm_tilt(
     start = Takeoff(spin=number("spin", spin))
     if twists is None:
         longest = _seconds(duration=2.0 if duration is None else duration)
-        return Maneuver(body, _through(stations), start, longest)
+        return Maneuver.moves(body, _through(stations), start, longest)
     whole_number("twists, unless it is None,", twists, 1, _MOST_CYCLES)
-    middle = twist_time(Maneuver(body, _through(stations), start, begin + move), twists / 2)
+    middle = twist_time(Maneuver.moves(body, _through(stations), start, begin + move), twists / 2)
     again = 2 * middle - begin - move
     stations += [(again, asymmetric), (again + move, out)]
     last = again + move + 0.5 if duration is None else _seconds(duration=duration)
-    return Maneuver(body, _through(stations), start, last)
+    return Maneuver.moves(body, _through(stations), start, last)
 
 
 def torque_twist(
@@ -216,7 +167,7 @@ def torque_twist(
     tilt = -math.copysign(1.0, left) * math.atan2(head, math.hypot(front, left))
     size = math.copysign(float(np.linalg.norm(h)), h @ along)
     start = Takeoff(tilt=tilt, angular_momentum=(size * along).tolist())
-    return Maneuver(body, _through([(0.0, held)]), start, _seconds(duration=duration))
+    return Maneuver.moves(body, _through([(0.0, held)]), start, _seconds(duration=duration))
 
 
 def hula(
@@ -255,7 +206,9 @@ def hula(
     poses = [bent, swung, swung, end]
     row = list(zip(times, poses, strict=True))
     moves = _through(row if hold > 0 else [row[0], *row[2:]])
-    return Maneuver(body, moves, Takeoff(spin=number("spin", spin)), _seconds(duration=duration))
+    return Maneuver.moves(
+        body, moves, Takeoff(spin=number("spin", spin)), _seconds(duration=duration)
+    )
 
 
 def twist_time(maneuver: Maneuver, twists: float) -> float:
@@ -267,8 +220,8 @@ def twist_time(maneuver: Maneuver, twists: float) -> float:
     target = 2 * math.pi * number("twists", twists)
     longest = max(maneuver.duration, 1.0)
     while True:
-        flown = replace(maneuver, duration=longest).fly(accuracy=1e-12)
-        twist = np.abs(flown.dataset["twist"].values - maneuver.start.twist)
+        flown = maneuver.fly(duration=longest, accuracy=1e-12)
+        twist = np.abs(flown.dataset["twist"].values - maneuver.takeoff.twist)
         if twist.max() >= target:
             break
         if longest >= _LONGEST:
@@ -283,8 +236,8 @@ def twist_time(maneuver: Maneuver, twists: float) -> float:
     from scipy.optimize import brentq
 
     def missing(time: float) -> float:
-        here = replace(maneuver, duration=time).fly(accuracy=1e-12, samples=2).landing.twist
-        return abs(here - maneuver.start.twist) - target
+        here = maneuver.fly(duration=time, accuracy=1e-12, samples=2).landing.twist
+        return abs(here - maneuver.takeoff.twist) - target
 
     low = max(float(low), 1e-9)
     return float(brentq(missing, low, float(high), xtol=_FINE, rtol=1e-14))

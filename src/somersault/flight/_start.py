@@ -15,13 +15,14 @@ from somersault.attitude import (
     matrix_from_quaternion,
     quaternion_from_angles,
 )
-from somersault.flight._columns import Name, Numbers, numbers, position, row
 from somersault.flight._system import System
-from somersault.flight._takeoff import JointPlan, Takeoff
+from somersault.flight._takeoff import Takeoff
+from somersault.flight._values import Name, Values
+from somersault.flight.behaviours import JointPlan, Sprung, begin, side_by_side
 from somersault.stability._spin import holding
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Starts:
     """N takeoffs in numbers.
 
@@ -35,11 +36,11 @@ class Starts:
     q: Array
     u: Array
     angles: Array
-    values: Numbers
+    values: Values
     bodies: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Start:
     """One takeoff in numbers: as `Starts`, without its first dimension.
 
@@ -54,54 +55,50 @@ class Start:
     momentum: Array
     angles: Array
     plans: tuple[JointPlan, ...]
-    many: Starts
 
 
-def start(system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...]) -> Start:
-    """One takeoff."""
-    found = starts(system, takeoff, plans, numbers(takeoff, plans), 1)
-    h = momentum(system, found)[0]
+def start(system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...], one: Starts) -> Start:
+    """One takeoff, of the only one there is; SomersaultError for a joint held against no spin."""
+    h = momentum(system, one)[0]
+    settled = []
     for plan in plans:
-        if plan.hold and takeoff.spin is None and not np.any(h):
-            raise SomersaultError(
-                f"joint {plan.joint.name}: hold balances a spin, and this takeoff has none"
-            )
-    held = {
-        plan.joint.name: float(np.asarray(found.values["pretension", plan.joint.name]).ravel()[0])
-        for plan in plans
-        if plan.hold
-    }
+        does = plan.does
+        if isinstance(does, Sprung) and does.hold:
+            if takeoff.spin is None and not np.any(h):
+                raise SomersaultError(
+                    f"joint {plan.joint.name}: hold balances a spin, and this takeoff has none"
+                )
+            pretension = np.ravel(one.values["pretension", plan.joint.name])[0]
+            does = replace(does, pretension=float(pretension))
+        settled.append(replace(plan, does=does))
     return Start(
-        found.quaternion[0], found.omega[0], found.q[0], found.u[0], h,
-        found.angles[0],
-        tuple(replace(p, pretension=held.get(p.joint.name, p.pretension)) for p in plans), found,
+        one.quaternion[0], one.omega[0], one.q[0], one.u[0], h, one.angles[0], tuple(settled)
     )  # fmt: skip
 
 
 def starts(
-    system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...], values: Numbers, count: int
+    system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...], values: Values, count: int
 ) -> Starts:
     """Attitude, spin and pretension of `count` flights whose numbers are `values`."""
     quaternion, angles = _attitude(takeoff, values, count, system.model.axes)
-    both = [position(plan, values, count) for plan in plans]
-    q = np.concatenate([np.zeros((count, 0)), *(x for x, _ in both)], 1)
-    u = np.concatenate([np.zeros((count, 0)), *(x for _, x in both)], 1)
-    bodies = row(values, [(name,) for name in system.bodies], count)
+    q, u = begin(plans, values, count)
+    bodies = side_by_side(values, [(name,) for name in system.bodies], count)
     if ("angular_velocity", 1) in values:
-        omega = row(values, [("angular_velocity", k) for k in (1, 2, 3)], count)
+        omega = side_by_side(values, [("angular_velocity", k) for k in (1, 2, 3)], count)
     elif ("angular_momentum", 1) in values:
         of_joints = system.equations.momentum(q, _speeds(np.zeros((count, 3)), u), bodies)[:, :3]
-        h = row(values, [("angular_momentum", k) for k in (1, 2, 3)], count)
+        h = side_by_side(values, [("angular_momentum", k) for k in (1, 2, 3)], count)
         to_body = np.swapaxes(matrix_from_quaternion(quaternion), 1, 2)
         wanted = _turned(to_body, h) - of_joints
         omega = np.linalg.solve(system.equations.inertia(q, bodies), wanted[..., None])[..., 0]
     else:
-        rates = row(values, [("takeoff", n) for n in ("spin", "tilt_rate", "twist_rate")], count)
+        names: list[Name] = [("takeoff", n) for n in ("spin", "tilt_rate", "twist_rate")]
+        rates = side_by_side(values, names, count)
         omega = body_rates(angles, rates, system.model.axes)
-    found = Starts(quaternion, omega, q, u, angles, values, bodies)
-    if any(plan.hold for plan in plans):
-        found = replace(found, values=_pretensioned(system, takeoff, plans, found))
-    return found
+    begun = Starts(quaternion, omega, q, u, angles, values, bodies)
+    if any(isinstance(plan.does, Sprung) and plan.does.hold for plan in plans):
+        return replace(begun, values=_pretensioned(system, takeoff, plans, begun))
+    return begun
 
 
 def momentum(system: System, begun: Starts) -> Array:
@@ -110,12 +107,12 @@ def momentum(system: System, begun: Starts) -> Array:
     return _turned(matrix_from_quaternion(begun.quaternion), h)
 
 
-def _attitude(takeoff: Takeoff, values: Numbers, count: int, axes: Axes) -> tuple[Array, Array]:
+def _attitude(takeoff: Takeoff, values: Values, count: int, axes: Axes) -> tuple[Array, Array]:
     if takeoff.quaternion is None:
         names: list[Name] = [("takeoff", n) for n in ("somersault", "tilt", "twist")]
         somersault, tilt, twist = (values[name] for name in names)
         quaternion = quaternion_from_angles(somersault, tilt, twist, axes)
-        return np.broadcast_to(quaternion, (count, 4)), row(values, names, count)
+        return np.broadcast_to(quaternion, (count, 4)), side_by_side(values, names, count)
     given = np.asarray(takeoff.quaternion, float)
     given = given / np.abs(given).max()
     given = given / np.linalg.norm(given)
@@ -137,7 +134,7 @@ def _speeds(omega: Array, u: Array) -> Array:
 
 def _pretensioned(
     system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...], begun: Starts
-) -> Numbers:
+) -> Values:
     """The numbers with the torque that balances the nominal spin added to held joints' own.
 
     That is the steady spin of the takeoff pose about its principal axis nearest that of somersault,
@@ -162,7 +159,7 @@ def _pretensioned(
         rate = np.sqrt(h[:, 0] ** 2 + h[:, 1] ** 2 + h[:, 2] ** 2) / inertia
     more: dict[Name, Array] = {}
     for plan in plans:
-        if plan.hold:
+        if isinstance(plan.does, Sprung) and plan.does.hold:
             name = plan.joint.name
             own = torques[:, system.model.speed_slice(name).start] * rate**2
             more["pretension", name] = own + np.asarray(values["pretension", name])

@@ -22,7 +22,8 @@ from somersault._core.numbers import number, numbers
 from somersault.attitude import quaternion_from_matrix
 from somersault.dynamics import Equations
 from somersault.engine import STATUS, Integrator
-from somersault.flight._takeoff import JointTakeoff, Takeoff
+from somersault.flight._takeoff import Takeoff
+from somersault.flight.behaviours import JointTakeoff
 from somersault.history import summary
 from somersault.model import Joint, Model, body_frames, body_velocities, centre_of_mass
 from somersault.model._mounted import Mount
@@ -270,13 +271,11 @@ def _base_motion(mount: Mount, q: Array, u: Array) -> tuple[Array, Array, Array,
 
 def _let_go(joint: Joint, given: JointTakeoff | None, angle: float, rate: float) -> JointTakeoff:
     if given is None:
-        if joint.stiffness == 0:
-            return JointTakeoff("free", float(angle), float(rate), damping=joint.damping)
-        given = JointTakeoff(
-            "sprung", stiffness=joint.stiffness, damping=joint.damping, rest=joint.rest
-        )
-    moves = given.motion not in ("locked", "prescribed")
-    return replace(given, angle=float(angle), rate=float(rate) if moves else 0.0)
+        given = JointTakeoff("sprung" if joint.stiffness else "free").settled(joint)
+    here: dict[str, Any] = {"angle": float(angle)}
+    if given.in_state:
+        here["rate"] = float(rate)
+    return replace(given, **here)
 
 
 def height_energy(equations: Equations, q: ArrayLike, gravity: ArrayLike = GRAVITY) -> Array:

@@ -7,21 +7,19 @@ what is left out is hardly more than rounding, in each flight by itself.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import cache, lru_cache
+from dataclasses import dataclass
+from functools import cache
+from typing import Protocol
 
 import casadi as ca
 import numpy as np
 
 from somersault._core.array import Array
 from somersault.engine import Kernel
-from somersault.flight._columns import Numbers, numbers
 from somersault.flight._course import Course
-from somersault.flight._start import Starts, starts
-from somersault.flight._system import System, system
-from somersault.flight._takeoff import JointPlan, Takeoff, kinds
-from somersault.model import Model
-from somersault.motion._path import TAPE_DEGREE, Path
+from somersault.flight._system import System
+from somersault.flight._values import Values
+from somersault.motion import TAPE_DEGREE, Path
 
 _TOLERANCE = 1e-13  # of each step of the nominal flight
 _LEFT_OUT = 1e-11  # of a piece's greatest torque: what the last coefficients may be,
@@ -33,42 +31,33 @@ _ANGLES = np.pi * (np.arange(_COUNT) + 0.5) / _COUNT
 _POINTS = 0.5 - 0.5 * np.cos(_ANGLES)  # within a piece, 0 to 1
 
 
-def course(
-    chosen: System, takeoff: Takeoff, plans: tuple[JointPlan, ...], begun: Starts, duration: float
-) -> Course:
-    """The course of N flights, with their motor tapes."""
-    if takeoff.tape is None:
-        return Course(chosen, plans, begun, duration)
-    nominal = tuple(
-        replace(plan, motion="prescribed", following=False, stops=()) if plan.on_path else plan
-        for plan in plans
-    )
-    momentum = tuple(float(x) for x in takeoff.tape)
-    tape = _nominal(chosen.model, nominal, momentum, duration)
-    values = {n: x for n, x in begun.values.items() if n[0] in ("times", "angles", "angle")}
-    if any(isinstance(x, np.ndarray) for x in values.values()):
-        motion = _Motion(chosen.model, nominal, momentum, duration)
-        tape = _each(motion, values, len(begun.q), tape)
-    played = [
-        chosen.model.speed_slice(plan.joint.name).start
-        for plan in plans
-        if plan.motion == "compliant"
-    ]
-    return Course(chosen, plans, begun, duration, tape.path(played))
+class Flights(Protocol):
+    """Some flights with their numbers."""
+
+    @property
+    def course(self) -> Course: ...
+
+    @property
+    def rows(self) -> Array: ...
+
+
+class Nominal(Protocol):
+    """The flights whose torques are recorded: those that follow their paths exactly."""
+
+    @property
+    def system(self) -> System: ...
+
+    @property
+    def values(self) -> Values: ...
+
+    @property
+    def duration(self) -> float: ...
+
+    def begun(self, values: Values, count: int) -> Flights: ...
 
 
 @dataclass(frozen=True)
-class _Motion:
-    """What flights that are recorded have in common; `momentum` is that at takeoff, body axes."""
-
-    model: Model
-    plans: tuple[JointPlan, ...]
-    momentum: tuple[float, ...]
-    duration: float
-
-
-@dataclass(frozen=True)
-class _Tape:
+class Tape:
     """Edges of pieces (N, P + 1), some of no length, and the powers of the time since each began
     (N, P, joint speeds, powers)."""
 
@@ -88,26 +77,26 @@ class _Tape:
         return Path(self.edges, whole.reshape(*whole.shape[:2], -1))
 
 
-@lru_cache(maxsize=64)
-def _nominal(
-    model: Model, plans: tuple[JointPlan, ...], momentum: tuple[float, ...], duration: float
-) -> _Tape:
+def recorded(nominal: Nominal) -> Tape:
     """The tape where nothing is varied."""
-    return _exact(_Motion(model, plans, momentum, duration), {}, 1, _LONGEST)
+    return _exact(nominal, nominal.values, 1, _LONGEST)
 
 
-def _each(motion: _Motion, values: Numbers, count: int, nominal: _Tape) -> _Tape:
-    """The tapes of many flights, in pieces as long as the nominal one's or shorter."""
-    length = float(np.diff(nominal.edges).max())
+def recorded_each(nominal: Nominal, values: Values, count: int, one: Tape) -> Tape:
+    """The tapes of many flights, in pieces as long as those of the one tape or shorter.
+
+    `values` has the numbers that differ from the nominal flight's.
+    """
+    length = float(np.diff(one.edges).max())
     # Of a flight: what inverse dynamics is given, in twice as many pieces.
-    size = 2 * nominal.powers.shape[1] * _COUNT * (8 * len(motion.plans) + 20)
+    size = 2 * one.powers.shape[1] * _COUNT * (8 * len(nominal.system.kinds) + 20)
     parts = []
     for some in np.array_split(np.arange(count), -(-count * size // _AT_ONCE)):
-        own = {n: x[some] if isinstance(x, np.ndarray) else x for n, x in values.items()}
-        parts.append(_exact(motion, own, len(some), length))
+        chosen = {n: x[some] if isinstance(x, np.ndarray) else x for n, x in values.items()}
+        parts.append(_exact(nominal, {**nominal.values, **chosen}, len(some), length))
     pieces = max(part.powers.shape[1] for part in parts)
-    whole = _Tape(
-        np.full((count, pieces + 1), motion.duration),
+    whole = Tape(
+        np.full((count, pieces + 1), nominal.duration),
         np.zeros((count, pieces, *parts[0].powers.shape[2:])),
     )
     first = 0
@@ -119,35 +108,31 @@ def _each(motion: _Motion, values: Numbers, count: int, nominal: _Tape) -> _Tape
     return whole
 
 
-def _exact(motion: _Motion, values: Numbers, count: int, length: float) -> _Tape:
+def _exact(nominal: Nominal, values: Values, count: int, length: float) -> Tape:
     """The tapes of some flights, in pieces no longer than `length`."""
-    plans, alone = motion.plans, Takeoff(angular_momentum=motion.momentum)
-    own = system(motion.model, kinds(plans), None)
-    begun = starts(own, alone, plans, {**numbers(alone, plans), **values}, count)
-    flight = Course(own, plans, begun, motion.duration)
-    first = own.start(begun.quaternion, begun.omega, begun.q, begun.u)
-    knots = np.broadcast_to(flight.knots, (count, flight.knots.shape[1]))
+    flights = nominal.begun(values, count)
+    knots = np.broadcast_to(flights.course.knots, (count, flights.course.knots.shape[1]))
     edges = _divided(knots, length)
     while True:
-        tape, left_out = _recorded(own, flight, first, edges)
+        tape, left_out = _recorded(nominal.system, flights, edges)
         again = left_out & (np.diff(edges) > _SHORTEST)
         if not again.any():
             return tape
         middle = 0.5 * (edges[:, 1:] + edges[:, :-1])
-        edges = np.concatenate([edges, np.where(again, middle, motion.duration)], 1)
+        edges = np.concatenate([edges, np.where(again, middle, nominal.duration)], 1)
         edges = np.sort(edges, 1)
         # What only fills up a row may go where it does in all rows.
-        edges = edges[:, : (edges < motion.duration).sum(1).max() + 1]
+        edges = edges[:, : (edges < nominal.duration).sum(1).max() + 1]
 
 
-def _recorded(own: System, flight: Course, first: Array, edges: Array) -> tuple[_Tape, Array]:
+def _recorded(system: System, flights: Flights, edges: Array) -> tuple[Tape, Array]:
     """Tapes in pieces between edges (N, P + 1), and which pieces leave too much out, (N, P)."""
     count, spans = len(edges), np.diff(edges)
     times = (edges[:, :-1, None] + spans[..., None] * _POINTS).reshape(count, -1)
-    times = np.minimum(times, flight.duration)
-    found = flight.solve(first, times, _TOLERANCE)
-    parameters = np.repeat(flight.parameters(edges[:, :-1]), _COUNT, 1)
-    torques = own.loads(np.concatenate([found.states, times[..., None], parameters], 2))[..., 6:]
+    times = np.minimum(times, flights.course.duration)
+    states = flights.course.solve(flights.rows, times, _TOLERANCE).states
+    parameters = np.repeat(flights.course.parameters(edges[:, :-1]), _COUNT, 1)
+    torques = system.loads(np.concatenate([states, times[..., None], parameters], 2))[..., 6:]
     torques = torques.reshape(count, -1, _COUNT, torques.shape[-1]).swapaxes(2, 3)
     series = _polynomials()(torques)
     scale = spans[..., None, None] ** np.arange(_COUNT)
@@ -157,7 +142,7 @@ def _recorded(own: System, flight: Course, first: Array, edges: Array) -> tuple[
     most = np.abs(torques).max((2, 3))
     most = np.maximum(most, _LITTLE * most.max(1, keepdims=True))
     left_out = np.abs(series[..., _COUNT:]).max((2, 3)) > _LEFT_OUT * most
-    return _Tape(edges, powers), left_out & (spans > 0)
+    return Tape(edges, powers), left_out & (spans > 0)
 
 
 def _divided(knots: Array, length: float) -> Array:

@@ -10,6 +10,7 @@ from somersault.model._load import load, shipped
 from somersault.model._mirror import (
     Pair,
     common_name,
+    mirror_images,
     mirror_pairs,
     named_pairs,
     reflection,
@@ -57,6 +58,7 @@ __all__ = [
     "common_name",
     "load",
     "merge_welded",
+    "mirror_images",
     "mirror_pairs",
     "model_shapes",
     "mounted",

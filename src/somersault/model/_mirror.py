@@ -75,6 +75,20 @@ def sides(model: Model, name: str) -> dict[str, tuple[float, float]]:
     return {left: (1.0, 0.0), right: reflection(model, pair)}
 
 
+def mirror_images(model: Model) -> dict[str, tuple[str, float, float]]:
+    """Each hinge's and slide's mirror image: its name, and the factor and the offset that make its
+    angle of this joint's."""
+    joints = {joint.name for joint in model.joints if joint.kind != "ball"}
+    images = {}
+    for pair in mirror_pairs(model):
+        left, right = model.speeds[pair.left], model.speeds[pair.right]
+        if left in joints:
+            factor, offset = reflection(model, pair)
+            images[left] = (right, factor, offset)
+            images[right] = (left, factor, -factor * offset)
+    return images
+
+
 @dataclass(frozen=True)
 class _Drawn:
     """A body as the file draws it, in the base's axes: frame, centre of mass and inertia."""

@@ -36,7 +36,7 @@ _SHOWN = 6  # columns in a sentence
 
 
 @dataclass(frozen=True)
-class _Table:
+class Table:
     """A file's columns by label, and whether it says that angles are degrees."""
 
     labels: list[str]
@@ -76,7 +76,7 @@ def read_motion(
     if degrees is not None:
         truth("degrees", degrees)
     try:
-        table = _table(file)
+        table = table_of(file)
         said = table.degrees if degrees is None else degrees
         if None not in (degrees, table.degrees) and degrees != table.degrees:
             raise SomersaultError(
@@ -93,7 +93,7 @@ def read_motion(
         raise SomersaultError(f"{file.name}: {mistake}") from None
 
 
-def _table(file: File) -> _Table:
+def table_of(file: File) -> Table:
     """What a file holds, by its ending."""
     ending = file.suffix.lower()
     if ending not in (".csv", ".tsv", ".txt", ".mot", ".sto"):
@@ -101,7 +101,7 @@ def _table(file: File) -> _Table:
     lines = _lines(file)
     if ending in (".mot", ".sto"):
         return _opensim(lines)
-    return _Table(*_numbers(lines))
+    return Table(*_numbers(lines))
 
 
 def _lines(file: File) -> list[tuple[int, str]]:
@@ -131,7 +131,7 @@ def _lines(file: File) -> list[tuple[int, str]]:
     return lines
 
 
-def _opensim(lines: list[tuple[int, str]]) -> _Table:
+def _opensim(lines: list[tuple[int, str]]) -> Table:
     """The table below an OpenSim or SIMM header."""
     words = [line.split()[0].lower() for _, line in lines]
     if "endheader" not in words:
@@ -155,9 +155,9 @@ def _opensim(lines: list[tuple[int, str]]) -> _Table:
             )
     told = re.search(r"^indegrees\s*=\s*(yes|no|true|false)\b", header, re.MULTILINE)
     if told:
-        return _Table(labels, values, told.group(1) in ("yes", "true"))
+        return Table(labels, values, told.group(1) in ("yes", "true"))
     sentence = re.search(r"angles are in (degrees|radians)", header)
-    return _Table(labels, values, sentence.group(1) == "degrees" if sentence else None)
+    return Table(labels, values, sentence.group(1) == "degrees" if sentence else None)
 
 
 def _numbers(lines: list[tuple[int, str]]) -> tuple[list[str], Array]:
@@ -209,7 +209,7 @@ def _mistake(places: list[int], rows: list[str], labels: list[str], mark: str | 
 
 
 def _columns(
-    table: _Table, model: Model, names: Mapping[str, str], ignore_others: bool, degrees: bool | None
+    table: Table, model: Model, names: Mapping[str, str], ignore_others: bool, degrees: bool | None
 ) -> tuple[Array, dict[str, Array]]:
     """Times (T,) in s, and samples (T,) by the joint's or pair's name in rad or m."""
     if not isinstance(names, Mapping):
@@ -258,6 +258,16 @@ def _split(label: str) -> tuple[str, str | None]:
         return found["name"], found["unit"].strip()
     state = _STATE.fullmatch(label)
     return (state[1] if state else label), None
+
+
+def column_name(label: str) -> str:
+    """A column's name without its unit."""
+    return _split(label)[0]
+
+
+def seconds(label: str) -> float:
+    """What a column of times is multiplied by to be in s."""
+    return _factor(label, _split(label)[1], "time", None)
 
 
 def _factor(label: str, unit: str | None, kind: str, degrees: bool | None) -> float:

@@ -18,9 +18,17 @@ from somersault._core.array import Array
 from somersault._core.checks import by_name, instance, text, truth
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import MOST, number
-from somersault.model import LIMIT_SLACK, Joint, Model, load
-from somersault.model._mirror import Pair, mirror_pairs, named_pairs, reflection, sides
-from somersault.motion._path import DEGREE, Path, check, increasing, moves, polynomial
+from somersault.model import (
+    LIMIT_SLACK,
+    Joint,
+    Model,
+    Pair,
+    load,
+    mirror_images,
+    named_pairs,
+    sides,
+)
+from somersault.motion._path import DEGREE, Path, check_rows, increasing, moves, polynomial
 
 _TURNS = 4 * pi  # rad: no joint winds up so far; degrees read as radians soon do
 _BETWEEN = 4  # points within each piece at which limits are checked beside its extremes
@@ -117,7 +125,7 @@ class Motion:
         Raises SomersaultError for a joint that has no mirror image in the model.
         """
         model = load(model)
-        images = _images(model)
+        images = mirror_images(model)
         paths = {}
         for name, path in self.paths.items():
             model.joint(name)
@@ -140,11 +148,7 @@ class Motion:
         factor = number("factor", factor)
         if factor <= 0:
             raise SomersaultError(f"factor {factor:g} turns time back or stops it; give one over 0")
-        with np.errstate(all="ignore"):  # what overflows is refused
-            powers = factor ** np.arange(DEGREE + 1)
-            paths = {
-                n: Path(p.knots * factor, p.coefficients / powers) for n, p in self.paths.items()
-            }
+        paths = {name: path.scaled(factor) for name, path in self.paths.items()}
         return replace(
             self,
             paths=paths,
@@ -156,9 +160,7 @@ class Motion:
     def delayed(self, seconds: float) -> Motion:
         """The same motion, later by some seconds; earlier where that is negative."""
         delay = number("delay", seconds)
-        paths = {
-            name: Path(path.knots + delay, path.coefficients) for name, path in self.paths.items()
-        }
+        paths = {name: path.delayed(delay) for name, path in self.paths.items()}
         return replace(
             self,
             paths=paths,
@@ -315,7 +317,7 @@ def _keyframes(name: str, rows: Sequence[tuple[float, float]]) -> Array:
         for what, column in zip(("times", "angles"), table.T, strict=True)
     )
     try:
-        check(times, angles)
+        check_rows(times, angles, "angles")
     except SomersaultError as mistake:
         raise SomersaultError(f"joint {name}: its motion {mistake}; put them in order") from None
     return table
@@ -325,19 +327,6 @@ def _pairs(model: Model) -> dict[str, Pair]:
     """Pairs of hinges or slides of either side, by the name that they share."""
     joints = {joint.name for joint in model.joints if joint.kind != "ball"}
     return {n: pair for n, pair in named_pairs(model).items() if model.speeds[pair.left] in joints}
-
-
-def _images(model: Model) -> dict[str, tuple[str, float, float]]:
-    """Each joint's mirror image, and its angle from the joint's own: (image, factor, offset)."""
-    joints = {joint.name for joint in model.joints if joint.kind != "ball"}
-    images = {}
-    for pair in mirror_pairs(model):
-        left, right = model.speeds[pair.left], model.speeds[pair.right]
-        if left in joints:
-            factor, offset = reflection(model, pair)
-            images[left] = (right, factor, offset)
-            images[right] = (left, factor, -factor * offset)
-    return images
 
 
 def _extremes(path: Path, end: float) -> tuple[Array, Array]:

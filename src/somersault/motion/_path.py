@@ -2,13 +2,15 @@
 
 Smooth moves between held values are the quintic 10 s³ − 15 s⁴ + 6 s⁵ of each move's own time,
 so that rate and acceleration are zero at both ends and continuous throughout. Before the first
-knot and after the last a path is held, whatever it is made of.
+knot and after the last a path is held, whatever it is made of. Torques go along paths too,
+straight or held between samples.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import factorial
 from typing import Any
 
 import numpy as np
@@ -20,6 +22,7 @@ DEGREE = 5
 TAPE_DEGREE = 12
 _SHORTEST = 1e-6  # s
 _EARLY = 1e-9  # s that count as none
+_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +43,37 @@ class Path:
         coefficients = sign * self.coefficients
         coefficients[..., 0] += offset
         return Path(self.knots, coefficients, self.known)
+
+    def scaled(self, factor: float) -> Path:
+        """The same in `factor` times its time, about time 0."""
+        with np.errstate(all="ignore"):  # what overflows is refused later
+            powers = factor ** np.arange(DEGREE + 1)
+            known = (factor * self.known[0], factor * self.known[1])
+            return Path(self.knots * factor, self.coefficients / powers, known)
+
+    def delayed(self, seconds: float) -> Path:
+        """The same, later by some seconds."""
+        known = (self.known[0] + seconds, self.known[1] + seconds)
+        return Path(self.knots + seconds, self.coefficients, known)
+
+    def reversed(self, end: float) -> Path:
+        """The same backwards in time: at t where it was at `end` - t."""
+        spans = np.diff(self.knots, axis=-1)
+        nothing = np.zeros((*spans.shape[:-1], 1))
+        # Each piece's time runs on from its other end; before the first knot and after the last
+        # it has none, and runs from the same one.
+        shift = np.concatenate([nothing, spans, nothing], -1)[..., None]
+        powers = []
+        rest = np.moveaxis(self.coefficients, -1, 0)
+        for k in range(DEGREE + 1):
+            value = np.zeros(rest.shape[1:])
+            for c in reversed(rest):
+                value = value * shift[..., 0] + c
+            powers.append(value * (-1.0) ** k / factorial(k))
+            rest = np.stack([j * c for j, c in enumerate(rest)][1:] or [np.zeros(rest.shape[1:])])
+        coefficients = np.stack(powers, -1)[..., ::-1, :]
+        known = (end - self.known[1], end - self.known[0])
+        return Path(end - self.knots[..., ::-1], coefficients, known)
 
     def check_known(self, joint: str, duration: float) -> None:
         """SomersaultError unless it may be followed from 0 for so long."""
@@ -66,14 +100,37 @@ class Path:
 
 def moves(times: Array, values: Array) -> Path:
     """Smooth moves through held values (…, K) at times (…, K)."""
-    held = np.zeros((*values.shape[:-1], values.shape[-1] + 1, DEGREE + 1))
-    held[..., 0, 0] = values[..., 0]
-    held[..., 1:, 0] = values
+    path = held(times, values)
     span, by = np.diff(times), np.diff(values)
     with np.errstate(divide="ignore", invalid="ignore"):  # of paths that are refused later
         for power, factor in ((3, 10.0), (4, -15.0), (5, 6.0)):
-            held[..., 1:-1, power] = factor * by / span**power
-    return Path(times, held)
+            path.coefficients[..., 1:-1, power] = factor * by / span**power
+    return path
+
+
+def as_moves(path: Path) -> tuple[Array, Array] | None:
+    """Times (K,) and values (K,) of a path of smooth moves, None for one that is something else."""
+    values = path.coefficients[..., 1:, 0]
+    rebuilt = moves(path.knots, values).coefficients
+    size = np.abs(path.coefficients).max(initial=1e-300)
+    alike = np.all(np.abs(rebuilt - path.coefficients) <= _ROUNDING * size)
+    return (path.knots, values) if alike else None
+
+
+def straight(times: Array, values: Array) -> Path:
+    """Straight lines through values (…, K) at times (…, K); level before and after."""
+    path = held(times, values)
+    with np.errstate(divide="ignore", invalid="ignore"):  # of paths that are refused later
+        path.coefficients[..., 1:-1, 1] = np.diff(values) / np.diff(times)
+    return path
+
+
+def held(times: Array, values: Array) -> Path:
+    """Values (…, K) that are held from times (…, K) on; the first one before too."""
+    level = np.zeros((*values.shape[:-1], values.shape[-1] + 1, DEGREE + 1))
+    level[..., 0, 0] = values[..., 0]
+    level[..., 1:, 0] = values
+    return Path(times, level)
 
 
 def value(path: Path, time: float) -> tuple[float, float]:
@@ -96,11 +153,11 @@ def increasing(times: Array) -> Array:
     return np.all(np.diff(times) >= _SHORTEST, -1)
 
 
-def check(times: Array, values: Array) -> None:
-    """SomersaultError unless times and values are a path."""
+def check_rows(times: Array, values: Array, what: str) -> None:
+    """SomersaultError unless times and values (`what` they are) are a path."""
     if times.ndim != 1 or times.shape != values.shape or not times.size:
-        raise SomersaultError("needs as many times as angles, at least one of each")
+        raise SomersaultError(f"needs as many times as {what}, at least one of each")
     if not (np.all(np.isfinite(times)) and np.all(np.isfinite(values))):
-        raise SomersaultError("has times or angles that are not finite")
+        raise SomersaultError(f"has times or {what} that are not finite")
     if not increasing(times):
         raise SomersaultError("has times that do not increase, by a microsecond at least")

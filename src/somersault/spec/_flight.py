@@ -10,8 +10,9 @@ from typing import Any
 
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
-from somersault.flight._fly import STEPS
-from somersault.flight._takeoff import JointTakeoff, Takeoff
+from somersault.flight._maneuver import STEPS
+from somersault.flight._takeoff import Takeoff
+from somersault.flight.behaviours import JointTakeoff
 from somersault.model import Model, load
 from somersault.spec._keys import (
     BODY_AXES,

@@ -8,8 +8,10 @@ from typing import Any
 
 from somersault._core.errors import SomersaultError
 from somersault.flight._compliance import compliant, off_nominal
+from somersault.flight._plans import by_joint
 from somersault.flight._prescribed import prescribed
-from somersault.flight._takeoff import JointTakeoff, Takeoff, by_joint
+from somersault.flight._takeoff import Takeoff
+from somersault.flight.behaviours import JointTakeoff
 from somersault.model import Model, load
 from somersault.motion._files import read_motion
 from somersault.motion._motion import Motion

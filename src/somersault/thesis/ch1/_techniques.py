@@ -44,9 +44,8 @@ def work(maneuver: Maneuver, samples: int = 8001) -> tuple[float, float]:
 
 def tilted(tilt: float, pose: str = "layout", h: float = 60.0) -> Maneuver:
     """The gymnast held in a pose, his body tilted (rad) against the momentum h (kg m²/s)."""
-    return replace(
-        torque_twist(pose=pose), start=Takeoff(tilt=tilt, angular_momentum=(0.0, h, 0.0))
-    )
+    leant = Takeoff(tilt=tilt, angular_momentum=(0.0, h, 0.0))
+    return torque_twist(pose=pose).from_takeoff(leant)
 
 
 def rotation_number(maneuver: Maneuver, begin: float = 0.0) -> tuple[float, float]:
@@ -56,7 +55,7 @@ def rotation_number(maneuver: Maneuver, begin: float = 0.0) -> tuple[float, floa
     angles = first._angles[0] if begin == 0 else first._angles[-1]
     somersault, _, twist = angles.tolist()
     sense = np.sign(first.landing.twist - first._angles[0, 2])
-    start = maneuver.start.twist
+    start = maneuver.takeoff.twist
     end = twist_time(maneuver, abs(twist - start) / (2 * np.pi) + 1)
     landed = until(maneuver, end).landing
     return (
@@ -142,10 +141,8 @@ def _cat_claims() -> list[Claim]:
     flown = made.fly(accuracy=SHARP)
     momentum = float(np.abs(flown.angular_momentum).max())
     quicker = [apart(flown, made.scaled(k).fly(accuracy=SHARP)) for k in _QUICK]
-    back = replace(
-        made.reversed(),
-        start=Takeoff(quaternion=flown.landing.quaternion.tolist(), angular_momentum=(0, 0, 0)),
-    ).fly(accuracy=SHARP)
+    landed = Takeoff(quaternion=flown.landing.quaternion.tolist(), angular_momentum=(0, 0, 0))
+    back = made.reversed().from_takeoff(landed).fly(accuracy=SHARP)
     home = 2 * float(np.linalg.norm(back.landing.quaternion[1:]))
     end = np.degrees([flown.landing.somersault, flown.landing.tilt, flown.landing.twist])
     joints = flown.dataset["joint_angle"].values
@@ -233,7 +230,7 @@ def _badly_timed() -> Flight:
         name: [(t - shift if t >= again - 1e-9 else t, angle) for t, angle in row]
         for name, row in good.keyframes.items()
     }
-    return replace(good, keyframes=moves).fly(accuracy=SHARP)
+    return Maneuver.moves(good.model, moves, good.takeoff, good.duration).fly(accuracy=SHARP)
 
 
 def _twists_at(maneuver: Maneuver, time: float) -> float:

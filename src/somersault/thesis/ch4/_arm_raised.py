@@ -24,10 +24,9 @@ _SECONDS = 0.5  # in which it is raised; only the angles matter
 @cache
 def raised() -> Flight:
     """One arm raised in the air, without angular momentum."""
-    path = {"motion": "prescribed", "times": (0.0, _SECONDS)}
     joints = {
-        "left_shoulder": JointTakeoff(**path, angles=(0.0, _RAISED)),  # type: ignore[arg-type]
-        "right_shoulder": JointTakeoff(motion="locked", angle=0.0),
+        "left_shoulder": JointTakeoff.prescribed(times=(0.0, _SECONDS), angles=(0.0, _RAISED)),
+        "right_shoulder": JointTakeoff.locked(0.0),
     }
     start = Takeoff(angular_momentum=(0.0, 0.0, 0.0), joints=joints)
     return fly(MODEL, start, _SECONDS, accuracy=1e-11)

@@ -44,7 +44,8 @@ def takeoff(
     """A layout somersault at 8.64 rad/s from a tilt and a twist, rad."""
     if begun == "rates":
         return Takeoff(tilt=tilt, twist=twist, spin=SPIN, joints=joints)
-    inertia = _somersault_inertia(abs(float(np.asarray(joints["left_shoulder"].angle))))
+    shoulder: Any = joints["left_shoulder"]
+    inertia = _somersault_inertia(abs(float(np.asarray(shoulder.angle))))
     h = (0.0, SPIN * inertia, 0.0)
     return Takeoff(tilt=tilt, twist=twist, angular_momentum=h, joints=joints)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.flight import JointTakeoff, Takeoff, fly, off_nominal
+from somersault.flight import Takeoff, fly, off_nominal
 from somersault.thesis._claims import statement
 from somersault.thesis._entries import Result, Table
 from somersault.thesis.ch6 import _rudi as rudi
@@ -34,14 +34,10 @@ def only(groups: tuple[str, ...], frequency: float) -> Takeoff:
     parts = tuple(part for group in groups for part in _GROUPS[group])
     soft = rudi.strategy(frequency)
     joints = {
-        name: joint if name.endswith(parts) else _prescribed(joint)
+        name: joint if name.endswith(parts) else joint.nominal()
         for name, joint in soft.joints.items()
     }
     return replace(soft, joints=joints)
-
-
-def _prescribed(joint: JointTakeoff) -> JointTakeoff:
-    return JointTakeoff("prescribed", times=joint.times, angles=joint.angles)
 
 
 @cache

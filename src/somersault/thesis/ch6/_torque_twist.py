@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -47,7 +46,7 @@ def stopped_torque_twist() -> tuple[Maneuver, float, float]:
             angle = np.pi / 2 + sign * float(x[1])
             ends = (float(x[0]), float(x[0]) + 0.2)
             moves[f"{side}_shoulder_abduction"] = [(ends[0], np.pi / 2), (ends[1], angle)]
-        return replace(still, keyframes=moves)
+        return Maneuver.moves(still.model, moves, still.takeoff, still.duration)
 
     def wrong(x: Array) -> Array:
         made = leaning(x)
@@ -83,7 +82,7 @@ def _with_arms(pose: str) -> Maneuver:
     """The torque twist with both arms alike going from the T to a pose, from 0.3 s on."""
     still = torque_twist(pose="T", duration=2.2)
     to = inertia_change(poses=("T", pose), begin=0.3, duration=2.2)
-    return replace(still, keyframes=to.keyframes)
+    return Maneuver.moves(still.model, to.keyframes, still.takeoff, still.duration)
 
 
 def sec_6_2() -> Result:

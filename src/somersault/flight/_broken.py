@@ -1,0 +1,24 @@
+"""Why a flight broke off."""
+
+from __future__ import annotations
+
+from somersault.flight._flight import Flight
+from somersault.flight._lock import aligned
+
+BROKEN = ("too many steps", "not finite")
+
+
+def why_broken(flight: Flight) -> str:
+    """In a sentence, what ended a flight before its time and what to do about it."""
+    if flight.ended == "not finite":
+        return "its motion is no longer finite; a spring, damper or move is too stiff or fast"
+    given_up = f"it had taken {flight.steps} steps of the integration"
+    if joints := aligned(flight):
+        return (
+            f"{given_up}, and {' and '.join(joints)} have come into line there (gimbal lock), "
+            "which no step gets past; make them stiffer, or take the gains in another pose"
+        )
+    return (
+        f"{given_up}; a spring or damper is too stiff, or the accuracy too fine: make them "
+        "softer or coarser, or give more steps"
+    )

@@ -1,0 +1,83 @@
+"""One flight of a batch, with a history on which every turn is counted."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from somersault._core.array import Array
+from somersault.attitude import Axes, angles_from_quaternion
+from somersault.engine import STATUS
+from somersault.flight._batch import Batch
+from somersault.flight._flight import Flight
+from somersault.flight._start import Start
+from somersault.flight._system import System
+
+_STEPS_A_POINT = 20  # more, for each point that samples or turns need
+_FINEST_TURN = 0.6  # rad between the points that turns are counted on
+_MOST_POINTS = 5_000_000
+_MOST_REFINEMENTS = 24
+_MOST_PARTS = 16  # of a gap at once
+_CLOSEST = 1e-6  # cos Θ: a path nearer the singularity than this is taken to go through
+
+
+def flown(batch: Batch, times: Array, gravity: Array, accuracy: float, steps: int) -> Flight:
+    """The one flight of a batch, kept at `times` (s).
+
+    It is solved on points that are close enough to count turns on, if need be again on closer ones.
+    """
+    begun, duration = batch.begun(), batch.duration
+    points = _first_points(batch.system, begun.start, np.union1d(times, [0.0, duration]))
+    for _ in range(_MOST_REFINEMENTS):
+        solution = begun.solve(points, accuracy, steps + _STEPS_A_POINT * len(points))
+        end, status = float(solution.end[0]), float(solution.status[0])
+        before = points < end
+        states = np.concatenate([solution.states[0][before], solution.final])
+        moments = np.append(points[before], end)
+        parts = _needed(states, batch.model.axes)
+        if np.all(parts <= 1) or len(points) + parts.sum() > _MOST_POINTS:
+            break
+        points = np.union1d(_divided(moments, parts), points)
+    kept = np.isin(points[before], times)
+    # The end is kept where it was asked for, and where something cut the flight short.
+    keep = np.append(kept, status != 0 or times[-1] == duration)
+    position, velocity = (
+        np.asarray(x, float) for x in (batch.takeoff.position, batch.takeoff.velocity)
+    )
+    return Flight(
+        batch.system, begun.start, position, velocity, gravity, moments, states, keep,
+        begun.course, STATUS[status], int(solution.steps[0]),
+    )  # fmt: skip
+
+
+def _first_points(chosen: System, begun: Start, points: Array) -> Array:
+    """The points with more between them where the body turns far, by its rate at takeoff."""
+    least = np.linalg.eigvalsh(chosen.equations.inertia(begun.q))[0]
+    fastest = np.linalg.norm(begun.momentum) / least + np.abs(begun.u).sum()
+    parts = np.ceil(np.diff(points) * fastest / _FINEST_TURN)
+    return np.append(
+        _divided(points, np.clip(parts, 1, _MOST_POINTS // len(points)).astype(int)), points[-1]
+    )
+
+
+def _divided(points: Array, parts: Array) -> Array:
+    """The points but the last, each gap after one divided evenly into so many parts."""
+    start = np.cumsum(parts) - parts
+    within = (np.arange(parts.sum()) - np.repeat(start, parts)) / np.repeat(parts, parts)
+    return np.repeat(points[:-1], parts) + np.repeat(np.diff(points), parts) * within
+
+
+def _needed(states: Array, axes: Axes) -> Array:
+    """Into how many parts each gap must be divided for its turns to be counted rightly.
+
+    Near tilt ±π/2 somersault and twist run as fast as the body turns over cos Θ, so it must
+    turn by less than half of cos Θ from point to point: then no pole lies between.
+    """
+    q = states[:, :4] / np.linalg.norm(states[:, :4], axis=1, keepdims=True)
+    # The distance of unit quaternions keeps its digits where their product would not.
+    apart = np.minimum(
+        np.linalg.norm(q[1:] - q[:-1], axis=1), np.linalg.norm(q[1:] + q[:-1], axis=1)
+    )
+    turn = 4 * np.arcsin(np.minimum(apart / 2, 1.0))
+    upright = np.abs(np.cos(angles_from_quaternion(q, axes)[:, 1]))
+    near = np.maximum(np.minimum(upright[1:], upright[:-1]), _CLOSEST)
+    return np.clip(np.ceil(2 * turn / near), 1, _MOST_PARTS).astype(int)

@@ -1,0 +1,96 @@
+"""Where the numbers of a flight stand: in its state, and among its parameters.
+
+The state is (quaternion, ω, coordinates and speeds of the joints that move freely). Where no joint
+moves freely only the attitude is unknown: then the state is the quaternion alone, and ω is what
+the angular momentum, three parameters more, leaves it. Parameters are first those that change on
+the way (paths, the motor tape), then those that stay (bodies, joints, momentum).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from somersault.flight.behaviours import JointTakeoff
+from somersault.model import Joint, Model
+from somersault.motion import DEGREE, TAPE_DEGREE
+
+ATTITUDE, RATE = 4, 3  # of a state: quaternion and ω
+PATH = 1 + DEGREE + 1  # parameters of a path: since when, and its polynomial
+TAPED = TAPE_DEGREE + 1  # of each joint on the tape: its torque's polynomial
+
+
+@dataclass(frozen=True)
+class Slot:
+    """Where one joint's numbers stand: `q` and `u` in the state, `paths` and `lasting` among the
+    parameters; `tape` the polynomial of its torque on the motor tape."""
+
+    joint: Joint
+    kind: JointTakeoff
+    q: range
+    u: range
+    paths: tuple[range, ...]
+    lasting: range
+    tape: range
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The places of all of them; `tape` is where the motor tape's time of origin stands."""
+
+    slots: tuple[Slot, ...]
+    bound: bool
+    state: int
+    changing: int
+    bodies: range
+    momentum: range
+    parameters: int
+    tape: int | None
+
+    @property
+    def base(self) -> int:
+        """Numbers of the state that are the base's."""
+        return ATTITUDE if self.bound else ATTITUDE + RATE
+
+
+def layout(
+    model: Model, kinds: tuple[JointTakeoff, ...], bodies: tuple[str, ...], tape: bool
+) -> Layout:
+    """The layout of a model's flight whose joints are of these kinds.
+
+    `bodies` names the numbers of bodies that are parameters; with `tape` the torques of the nominal
+    motion act at the joints whose `nominal` behaviour is another.
+    """
+    pairs = list(zip(model.joints, kinds, strict=True))
+    moving = [joint for joint, kind in pairs if kind.in_state]
+    bound = not moving
+    q = ATTITUDE if bound else ATTITUDE + RATE
+    u = q + sum(joint.coordinates for joint in moving)
+    state = u + sum(joint.speeds for joint in moving)
+    path, origin = 0, PATH * sum(kind.path_count for kind in kinds)
+    taped = origin + 1
+    played = sum(is_taped(kind) for kind in kinds) if tape else 0
+    changing = origin + (1 + TAPED * played if tape else 0)
+    lasting = changing + len(bodies)
+    slots = []
+    for joint, kind in pairs:
+        n_q, n_u = (joint.coordinates, joint.speeds) if kind.in_state else (0, 0)
+        n_p = len(kind.parameters(joint))
+        n_t = TAPED if tape and is_taped(kind) else 0
+        paths = tuple(range(path + PATH * k, path + PATH * (k + 1)) for k in range(kind.path_count))
+        slot = Slot(
+            joint, kind, range(q, q + n_q), range(u, u + n_u), paths,
+            range(lasting, lasting + n_p), range(taped, taped + n_t),
+        )  # fmt: skip
+        slots.append(slot)
+        q, u, lasting, taped = q + n_q, u + n_u, lasting + n_p, taped + n_t
+        path += PATH * kind.path_count
+    momentum = range(lasting, lasting + (RATE if bound else 0))
+    return Layout(
+        tuple(slots), bound, state, changing, range(changing, changing + len(bodies)), momentum,
+        momentum.stop, origin if tape else None,
+    )  # fmt: skip
+
+
+def is_taped(kind: JointTakeoff) -> bool:
+    """Whether the motor tape acts at a joint: where the nominal flight does something else."""
+    return kind.in_state and not kind.nominal().in_state

@@ -1,0 +1,273 @@
+"""A maneuver: a model, how it takes off, and how long it flies."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from somersault._core.array import Array
+from somersault._core.checks import whole_number
+from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.numbers import number, numbers
+from somersault.flight._batch import Batch
+from somersault.flight._broken import BROKEN, why_broken
+from somersault.flight._compliance import compliant, off_nominal, with_momentum
+from somersault.flight._flight import Flight
+from somersault.flight._flown import flown
+from somersault.flight._prescribed import prescribed
+from somersault.flight._takeoff import Takeoff, require_takeoff
+from somersault.flight.behaviours import JointTakeoff, OnPath
+from somersault.model import Model, load
+from somersault.motion import Motion
+
+Event = Literal["quarter twist"]
+STEPS = 100_000  # of one flight's integration
+_MOST_STEPS = 10**9
+_MOST_SAMPLES = 5_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Maneuver:
+    """What a model does in the air, from takeoff to landing.
+
+    Parameters
+    ----------
+    model : Model or str
+        A model, the name of a shipped one, or a file.
+    takeoff : Takeoff
+        How it begins, and what its joints do.
+    duration : float
+        Of the flight, s.
+    gravity : sequence of float, (3,)
+        m/s², in inertial axes, 3 being up; it moves the centre of mass and nothing else.
+    accuracy : float
+        rad, the attitude error to stay below over a flight of some somersaults; a body that tumbles
+        multiplies errors as it does all deviations.
+    samples : int or sequence of float, optional
+        How many evenly spaced times are kept, the ends included, or the times themselves (s); 100 a
+        second unless it is given.
+    until : {"quarter twist"}, optional
+        What ends the flight earlier: the body's axis of somersault at right angles to the inertial
+        one (twist ±π/2), found to rounding.
+    steps : int
+        A flight that is not done after so many steps of the integration, and twenty more for every
+        sample and every 0.6 rad that it may turn, is given up: a joint in gimbal lock, or a spring
+        too stiff.
+
+    Raises
+    ------
+    SomersaultError
+        For anything that does not fit.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> twist = so.arm_tilt()
+    >>> flight = twist.compliant(30.0, pose="wrap").off_nominal(tilt=-0.05).fly()
+    >>> flight.ended
+    'duration'
+    """
+
+    model: Model
+    takeoff: Takeoff
+    duration: float = 1.0
+    gravity: Sequence[float] = (0.0, 0.0, 0.0)
+    accuracy: float = 1e-9
+    samples: int | Sequence[float] | Array | None = None
+    until: Event | None = None
+    steps: int = STEPS
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "model", load(self.model))
+        require_takeoff(self.takeoff)
+        object.__setattr__(self, "duration", flight_time(self.duration))
+        numbers("gravity", self.gravity, 3)
+        check_limits_of_flight(self.accuracy, self.until, self.steps)
+
+    @classmethod
+    def moves(
+        cls,
+        model: str | Model,
+        keyframes: Mapping[str, Sequence[tuple[float, float]]],
+        takeoff: Takeoff,
+        duration: float = 1.0,
+        **options: Any,
+    ) -> Maneuver:
+        """A maneuver whose joints move smoothly through keyframes.
+
+        Parameters
+        ----------
+        model : str or Model
+        keyframes : mapping of str to list of (float, float)
+            Times (s) and angles (rad, m) by joint, as `Motion.moves` takes them; joints of the
+            takeoff that are named here move so.
+        takeoff : Takeoff
+        duration : float
+            s.
+        **options
+            Other fields of the maneuver.
+
+        Returns
+        -------
+        Maneuver
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> arms = {"shoulder": [(0.1, 1.4), (0.4, 0.2)]}
+        >>> so.Maneuver.moves("furrer", arms, so.Takeoff(spin=7.0), 0.8)
+        Maneuver(furrer, 0.8 s)
+        """
+        body = load(model)
+        joints = prescribed(body, Motion.moves(body, keyframes))
+        moving = replace(takeoff, joints={**takeoff.joints, **joints})
+        return cls(body, moving, duration, **options)
+
+    def __repr__(self) -> str:
+        return f"Maneuver({self.model.name}, {self.duration:g} s)"
+
+    # --------------------------------------------------------------------------- flying
+
+    @property
+    def times(self) -> Array:
+        """Sample times, s."""
+        return _times(self.duration, self.samples)
+
+    @property
+    def batch(self) -> Batch:
+        """The flights that share this one's equations."""
+        return Batch(self.model, self.takeoff, self.duration, self.until)
+
+    def fly(self, **options: Any) -> Flight:
+        """The flight.
+
+        Parameters
+        ----------
+        **options
+            Fields of the maneuver that are to be others: accuracy, samples, until …
+
+        Returns
+        -------
+        Flight
+            Where it broke off, with a SomersaultWarning that says why.
+        """
+        if options:
+            return self.changed(**options).fly()
+        gravity = numbers("gravity", self.gravity, 3)
+        flight = flown(self.batch, self.times, gravity, self.accuracy, self.steps)
+        if flight.ended in BROKEN:
+            warnings.warn(
+                f"the flight broke off at {flight.landing.time:g} s: {why_broken(flight)}",
+                SomersaultWarning,
+                stacklevel=2,
+            )
+        return flight
+
+    @property
+    def keyframes(self) -> dict[str, list[tuple[float, float]]]:
+        """Times (s) and angles (rad, m) of the joints that are moved through such, by name."""
+        return {
+            name: list(zip(does.times, does.angles, strict=True))
+            for name, does in self.takeoff.joints.items()
+            if isinstance(does, OnPath) and does.path is None
+        }
+
+    @property
+    def motion(self) -> Motion:
+        """The motion of all joints that move through keyframes."""
+        return Motion.moves(self.model, self.keyframes)
+
+    # -------------------------------------------------------------------- other maneuvers
+
+    def changed(self, **fields: Any) -> Maneuver:
+        """The same with other fields; SomersaultError for what a maneuver does not have."""
+        for name in fields:
+            if name not in self.__dataclass_fields__:
+                known = ", ".join(self.__dataclass_fields__)
+                raise SomersaultError(f"{name} is no part of a maneuver; there are {known}")
+        return replace(self, **fields)
+
+    def compliant(
+        self,
+        natural_frequency: float,
+        damping_ratio: float = 0.7,
+        *,
+        pose: Mapping[str, float] | float | str,
+        **options: Any,
+    ) -> Maneuver:
+        """The same with a body that gives way about the motion: see `somersault.compliant`."""
+        takeoff = compliant(
+            self.model, self.takeoff, natural_frequency, damping_ratio, pose=pose, **options
+        )
+        return replace(self, takeoff=takeoff)
+
+    def from_takeoff(self, takeoff: Takeoff) -> Maneuver:
+        """The same moves from another takeoff, whose own joints do otherwise what they say."""
+        joints = {**self.takeoff.joints, **takeoff.joints}
+        return replace(self, takeoff=replace(takeoff, joints=joints))
+
+    def with_momentum(self) -> Maneuver:
+        """The same, its rotation given as angular momentum: see `somersault.with_momentum`."""
+        return replace(self, takeoff=with_momentum(self.model, self.takeoff))
+
+    def off_nominal(
+        self, *, somersault: float = 0.0, tilt: float = 0.0, twist: float = 0.0
+    ) -> Maneuver:
+        """The same from an attitude that is so far off, rad: see `somersault.off_nominal`."""
+        takeoff = off_nominal(
+            self.model, self.takeoff, somersault=somersault, tilt=tilt, twist=twist
+        )
+        return replace(self, takeoff=takeoff)
+
+    def scaled(self, factor: float) -> Maneuver:
+        """The same moves in `factor` times their time; it takes off as before.
+
+        Raises SomersaultError unless the factor is positive.
+        """
+        if number("factor", factor) <= 0:
+            raise SomersaultError(f"factor {factor:g} turns time back or stops it; give one over 0")
+        moved = self._retimed(lambda does: does.scaled_in_time(factor))
+        return replace(moved, duration=factor * self.duration)
+
+    def reversed(self) -> Maneuver:
+        """The same moves from the last to the first; it takes off as before."""
+        return self._retimed(lambda does: does.reversed_in_time(self.duration))
+
+    def _retimed(self, change: Callable[[JointTakeoff], JointTakeoff]) -> Maneuver:
+        joints = {name: change(does) for name, does in self.takeoff.joints.items()}
+        return replace(self, takeoff=replace(self.takeoff, joints=joints))
+
+
+def flight_time(duration: float) -> float:
+    """A duration in s; SomersaultError for one that is no flight."""
+    if number("duration", duration) <= 0:
+        raise SomersaultError(f"duration {duration:g} s is no flight; give a positive number")
+    return float(duration)
+
+
+def check_limits_of_flight(accuracy: float, until: str | None, steps: int) -> None:
+    """SomersaultError unless a flight can be flown so accurately, until such an event, in so many
+    steps."""
+    if not 1e-14 <= number("accuracy", accuracy) <= 1e-2:
+        raise SomersaultError(f"accuracy {accuracy:g} rad is out of reach; give 1e-14 to 1e-2")
+    if until is not None and not (isinstance(until, str) and until == "quarter twist"):
+        raise SomersaultError(f"until {until!r} is no event; use 'quarter twist'")
+    whole_number("steps", steps, 1, _MOST_STEPS)
+
+
+def _times(duration: float, samples: int | Sequence[float] | Array | None) -> Array:
+    if samples is None:
+        samples = int(min(max(2, math.ceil(100 * duration) + 1), 100_001))
+    if isinstance(samples, int | np.integer) and not isinstance(samples, bool):
+        if not 2 <= samples <= _MOST_SAMPLES:
+            raise SomersaultError(f"samples must be 2 to {_MOST_SAMPLES}, and is {samples}")
+        return np.linspace(0.0, duration, int(samples))
+    times = numbers("samples", samples)
+    if not times.size or np.any(np.diff(times) <= 0) or times[0] < 0 or times[-1] > duration:
+        raise SomersaultError("samples must be times that increase from 0 or later to the duration")
+    return times

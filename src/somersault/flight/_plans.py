@@ -1,0 +1,125 @@
+"""What each joint of a model does in a flight, everything filled in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from somersault._core.array import Array
+from somersault._core.errors import SomersaultError
+from somersault.dynamics import Equations
+from somersault.flight._takeoff import Takeoff
+from somersault.flight._values import Name
+from somersault.flight.behaviours import (
+    JointPlan,
+    JointTakeoff,
+    Sprung,
+    begin,
+    check_coupled,
+)
+from somersault.model import Joint, Model, sides
+from somersault.stability._spin import holding
+
+
+def plans(model: Model, takeoff: Takeoff) -> tuple[JointPlan, ...]:
+    """One plan for each joint, in the model's order; SomersaultError for what does not fit.
+
+    A left–right pair may be named once, by its common name; the right side is mirrored.
+    """
+    given = by_joint(model, takeoff.joints)
+    settled = tuple(_settled(joint, given.get(joint.name)) for joint in model.joints)
+    check_coupled(model, settled)
+    if any(isinstance(p.does, Sprung) and (p.does.K, p.does.B) != (None, None) for p in settled):
+        return _with_dimensions(model, takeoff, settled)
+    return settled
+
+
+def by_joint(model: Model, joints: Mapping[str, JointTakeoff]) -> dict[str, JointTakeoff]:
+    """Takeoffs by the joints' own names, pairs spelled out; SomersaultError as of `plans`."""
+    given: dict[str, JointTakeoff] = {}
+    for name, takeoff in joints.items():
+        both = sides(model, name)
+        first = next(iter(both))
+        for joint, (factor, offset) in both.items():
+            model.joint(joint)
+            if joint in given:
+                raise SomersaultError(f"joint {joint} is given twice, alone and with its pair")
+            image = joint != first
+            given[joint] = takeoff.mirrored(model, first, factor, offset) if image else takeoff
+    return given
+
+
+def numbers(takeoff: Takeoff, settled: tuple[JointPlan, ...]) -> dict[Name, float | Array]:
+    """All the numbers of one takeoff, by name."""
+    result: dict[Name, float | Array] = {}
+    if takeoff.quaternion is None:
+        result |= {("takeoff", n): getattr(takeoff, n) for n in ("somersault", "tilt", "twist")}
+    for what in ("angular_velocity", "angular_momentum"):
+        row = getattr(takeoff, what)
+        if row is not None:
+            result |= {(what, k + 1): x for k, x in enumerate(row)}
+    if takeoff.angular_velocity is None and takeoff.angular_momentum is None:
+        result["takeoff", "spin"] = 0.0 if takeoff.spin is None else takeoff.spin
+        result |= {("takeoff", n): getattr(takeoff, n) for n in ("tilt_rate", "twist_rate")}
+    for plan in settled:
+        result |= plan.does.numbers(plan.joint)
+    return result
+
+
+def sound(
+    settled: tuple[JointPlan, ...], values: Mapping[Name, float | Array], count: int
+) -> Array:
+    """Whether each of the flights is one that could be asked for by itself, (count,)."""
+    good = np.ones(count, bool)
+    for plan in settled:
+        good &= plan.does.sound(plan.joint, values, count)
+    if isinstance(values.get(("takeoff", "spin")), np.ndarray):
+        good &= np.asarray(values["takeoff", "spin"]) != 0
+    for key, x in values.items():
+        if str(key[0]).startswith("mass."):
+            good &= np.asarray(x) > 0
+    return good
+
+
+def _settled(joint: Joint, given: JointTakeoff | None) -> JointPlan:
+    try:
+        return JointPlan(joint, (given or JointTakeoff()).settled(joint))
+    except SomersaultError as mistake:
+        named = joint.name in str(mistake)
+        raise mistake if named else SomersaultError(f"joint {joint.name}: {mistake}") from None
+
+
+def _with_dimensions(
+    model: Model, takeoff: Takeoff, settled: tuple[JointPlan, ...]
+) -> tuple[JointPlan, ...]:
+    """The same with springs and dampers that are given without dimension in N m."""
+    q, u = (x[0] for x in begin(settled, numbers(takeoff, settled), 1))
+    rate = _spin_rate(model, takeoff, q, u)
+    if not rate:
+        raise SomersaultError(
+            "K and B are of a nominal spin, and this takeoff has none; give stiffness and damping"
+        )
+    inertias = Equations(model).outboard_inertia(q)
+    result = []
+    for plan in settled:
+        does = plan.does
+        if isinstance(does, Sprung):
+            inertia = float(inertias[model.speed_slice(plan.joint.name).start])
+            does = does.scaled(rate**2 * inertia, abs(rate) * inertia)
+        result.append(replace(plan, does=does))
+    return tuple(result)
+
+
+def _spin_rate(model: Model, takeoff: Takeoff, q: Array, u: Array) -> float:
+    """Ω of the nominal spin, rad/s: as given, or the one that has this angular momentum."""
+    if takeoff.spin is not None:
+        return takeoff.spin
+    if takeoff.angular_momentum is not None:
+        h = np.asarray(takeoff.angular_momentum, float)
+    else:
+        omega = np.zeros(3) if takeoff.angular_velocity is None else takeoff.angular_velocity
+        h = Equations(model).momentum(q, np.concatenate([omega, np.zeros(3), u]))[:3]
+    inertia, _ = holding(model, q[None], (), np.empty((1, 0)), compiled=False)
+    return float(np.linalg.norm(h) / inertia[0])

@@ -1,0 +1,40 @@
+"""What joints do in flight: one class in one file each."""
+
+from somersault.flight.behaviours._as_modelled import AsModelled
+from somersault.flight.behaviours._begin import begin
+from somersault.flight.behaviours._behaviour import Here, JointPlan, JointTakeoff, Known, kinds
+from somersault.flight.behaviours._compliant import Compliant, softened
+from somersault.flight.behaviours._coupled import Coupled, check_coupled, leaders
+from somersault.flight.behaviours._declared import declared, quantity, side_by_side
+from somersault.flight.behaviours._free import Free
+from somersault.flight.behaviours._locked import Locked
+from somersault.flight.behaviours._moving import Moving, Stopped
+from somersault.flight.behaviours._prescribed import OnPath, Prescribed
+from somersault.flight.behaviours._sprung import Sprung
+from somersault.flight.behaviours._torque import Torque
+
+__all__ = [
+    "AsModelled",
+    "Compliant",
+    "Coupled",
+    "Free",
+    "Here",
+    "JointPlan",
+    "JointTakeoff",
+    "Known",
+    "Locked",
+    "Moving",
+    "OnPath",
+    "Prescribed",
+    "Sprung",
+    "Stopped",
+    "Torque",
+    "begin",
+    "check_coupled",
+    "declared",
+    "kinds",
+    "leaders",
+    "quantity",
+    "side_by_side",
+    "softened",
+]

@@ -1,0 +1,30 @@
+"""Where all joints are at takeoff, and how fast they move."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from somersault._core.array import Array
+from somersault.flight._values import Values
+from somersault.flight.behaviours._behaviour import JointPlan
+from somersault.flight.behaviours._coupled import leaders
+from somersault.flight.behaviours._declared import side_by_side
+
+
+def begin(plans: tuple[JointPlan, ...], values: Values, count: int) -> tuple[Array, Array]:
+    """Coordinates (count, coordinates) and speeds (count, speeds) of all joints at takeoff."""
+    led = leaders(plans)
+    parts: dict[str, tuple[Array, Array]] = {}
+    for plan in plans:
+        if plan.joint.name not in led:
+            parts[plan.joint.name] = plan.does.begin(plan.joint, values, count)
+    for name, leader in led.items():
+        q, u = parts[leader]
+        gears = side_by_side(values, [("factor", name), ("offset", name)], count)
+        parts[name] = gears[:, :1] * q + gears[:, 1:], gears[:, :1] * u
+    nothing = np.zeros((count, 0))
+    both = [parts[plan.joint.name] for plan in plans]
+    return (
+        np.concatenate([nothing, *(q for q, _ in both)], 1),
+        np.concatenate([nothing, *(u for _, u in both)], 1),
+    )

@@ -1,0 +1,90 @@
+"""A joint that follows another, as gears make it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from somersault._core.errors import SomersaultError
+from somersault.dynamics import spring_torques
+from somersault.flight.behaviours import _declared
+from somersault.flight.behaviours._behaviour import Here, JointPlan, JointTakeoff, Known
+from somersault.model import Joint, Model, mirror_images
+
+
+@dataclass(frozen=True)
+class Coupled(JointTakeoff, motion="coupled"):
+    """A joint whose coordinate is `factor` times that of the joint `leader`, plus `offset`.
+
+    URDF calls it mimic. Where nothing is given it is as the model gears it. Where the leader moves
+    freely, the joint's own spring and damper, as the model has them, act through the gears.
+    """
+
+    leader: str = field(default="", kw_only=True, metadata={"structure": True})
+    factor: float = _declared.quantity("1", default=1.0)
+    offset: float = _declared.quantity("rad", "m", default=0.0)
+
+    def settled(self, joint: Joint) -> JointTakeoff:
+        plan = self._checked(joint)
+        if not isinstance(plan.leader, str):
+            raise SomersaultError(f"joint {joint.name}: leader must be a joint's name")
+        if plan.leader:
+            return plan
+        if joint.follows is None:
+            raise SomersaultError(
+                f"joint {joint.name} is coupled to no joint; name its leader, as the model has none"
+            )
+        geared = joint.follows
+        return Coupled(leader=geared.leader, factor=geared.factor, offset=geared.offset)
+
+    def mirrored(self, model: Model, name: str, factor: float, offset: float) -> Coupled:
+        plan = self.settled(model.joint(name))
+        assert isinstance(plan, Coupled)
+        images = mirror_images(model)
+        if plan.leader not in images:
+            raise SomersaultError(
+                f"joint {name} follows {plan.leader}, which has no mirror image, so the pair has "
+                "no common leader; give either side its own"
+            )
+        leader, by, about = images[plan.leader]  # leader's image = about + by · leader
+        turned = factor * plan.factor / by
+        shift = offset + factor * plan.offset - turned * about
+        return Coupled(leader=leader, factor=turned, offset=shift)
+
+    def parameters(self, joint: Joint) -> tuple[str, ...]:
+        return ("factor", "offset")
+
+    def place(self, here: Here) -> Known:
+        by, about = here.numbers["factor"], here.numbers["offset"]
+        assert here.leader is not None
+        leader = here.leader
+        return Known([by * leader.q[0] + about], [by * leader.u[0]], [by * a for a in leader.a])
+
+    def loads(self, here: Here) -> list[Any]:
+        joint = here.joint
+        return spring_torques(joint, here.q, here.u, joint.stiffness, joint.rest, joint.damping)
+
+
+def check_coupled(model: Model, plans: tuple[JointPlan, ...]) -> None:
+    """SomersaultError, by both names, for joints that cannot be coupled."""
+    does: Mapping[str, JointPlan] = {plan.joint.name: plan for plan in plans}
+    for plan in plans:
+        if not isinstance(plan.does, Coupled):
+            continue
+        where = f"joint {plan.joint.name} cannot follow {plan.does.leader}"
+        if plan.does.leader not in does:
+            raise SomersaultError(f"{where}: {model.name} has no joint of that name")
+        leader = does[plan.does.leader]
+        if "ball" in (plan.joint.kind, leader.joint.kind):
+            raise SomersaultError(f"{where}: one of them is a ball, and only hinges and slides can")
+        if isinstance(leader.does, Coupled):
+            raise SomersaultError(
+                f"{where}, which follows {leader.does.leader} itself; name the joint that leads "
+                "them all"
+            )
+
+
+def leaders(plans: tuple[JointPlan, ...]) -> dict[str, str]:
+    """The leader of each joint that follows one."""
+    return {p.joint.name: p.does.leader for p in plans if isinstance(p.does, Coupled)}

@@ -1,0 +1,133 @@
+"""How the numbers of a joint's behaviour are declared: once each, as fields of its class.
+
+From the declaration follow the keys of a SPEC, what a mirrored joint gets, which numbers an
+ensemble may vary and their units.
+"""
+
+from __future__ import annotations
+
+from dataclasses import Field, dataclass, field, fields
+from typing import Any, Literal
+
+import numpy as np
+
+from somersault._core.array import Array
+from somersault._core.numbers import number, numbers
+from somersault.flight._values import Name, Values
+from somersault.model import Joint
+
+_KEY = "quantity"
+Image = Literal["same", "turned", "angle"]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What is known of a number, or of a row of them.
+
+    `unit` of a hinge, `slide_unit` of a slide. `image` says what the mirrored joint gets: the
+    "same" number, one "turned" over with the joint's rate, or an "angle" about the pose in which
+    the file draws the joint. `least` is the smallest that makes sense. A `limited` one must be
+    within the joint's limits at takeoff.
+    """
+
+    unit: str
+    slide_unit: str
+    image: Image = "same"
+    row: bool = False
+    least: float | None = None
+    limited: bool = False
+
+
+def quantity(
+    unit: str,
+    slide_unit: str | None = None,
+    *,
+    default: Any = None,
+    image: Image = "same",
+    row: bool = False,
+    least: float | None = None,
+    limited: bool = False,
+    kw_only: bool = True,
+) -> Any:
+    """A field that is a number in `unit` (`slide_unit` for a slide), or a row of them.
+
+    The arguments are those of `Quantity`; `default` is what the field has where nothing is given.
+    """
+    declared = Quantity(unit, slide_unit or unit, image, row, least, limited)
+    return field(default=default, kw_only=kw_only, metadata={_KEY: declared})
+
+
+def angle(**options: Any) -> Any:
+    """A joint's coordinate at takeoff: rad, m; a rotation vector for a ball."""
+    return quantity("rad", "m", image="angle", limited=True, kw_only=False, **options)
+
+
+def rate(**options: Any) -> Any:
+    """A joint's speed at takeoff."""
+    return quantity("rad/s", "m/s", default=0.0, image="turned", kw_only=False, **options)
+
+
+def stiffness(**options: Any) -> Any:
+    """A spring's stiffness."""
+    return quantity("N m/rad", "N/m", **options)
+
+
+def damping(**options: Any) -> Any:
+    """A damper's constant."""
+    return quantity("N m s/rad", "N s/m", least=0.0, **options)
+
+
+def rest(**options: Any) -> Any:
+    """The coordinate at which a spring is slack."""
+    return quantity("rad", "m", image="angle", **options)
+
+
+def torque(**options: Any) -> Any:
+    """A torque, or a slide's force."""
+    return quantity("N m", "N", default=options.pop("default", 0.0), image="turned", **options)
+
+
+def declared(kind: Any) -> dict[str, Quantity]:
+    """The quantities of a behaviour, or of its class, by name."""
+    return {f.name: f.metadata[_KEY] for f in fields(kind) if _KEY in f.metadata}
+
+
+def is_quantity(one: Field[Any]) -> bool:
+    """Whether a field is a declared number."""
+    return _KEY in one.metadata
+
+
+# ------------------------------------------------------------------ numbers, checked and by name
+
+
+def checked(where: str, joint: Joint, name: str, what: Quantity, value: Any) -> Any:
+    """A value as floats; SomersaultError, naming it, for what is no number of this kind.
+
+    A ball takes three numbers where a hinge takes one.
+    """
+    label = f"{where}: {name}"
+    if value is None:
+        return None
+    if what.row:
+        return tuple(numbers(label, value).tolist())
+    if joint.kind == "ball" and name in ("angle", "rate"):
+        still = isinstance(value, float | int) and value == 0
+        return tuple(numbers(label, (0, 0, 0) if still else value, 3).tolist())
+    return number(label, value)
+
+
+def spread(joint: str, name: str, value: Any) -> dict[Name, float]:
+    """A quantity's numbers by name: (quantity, joint), or with a place from 1 for one of a row."""
+    if value is None:
+        return {}
+    if isinstance(value, tuple):
+        return {(name, joint, k + 1): x for k, x in enumerate(value)}
+    return {(name, joint): value}
+
+
+def side_by_side(values: Values, names: list[Name], count: int) -> Array:
+    """The numbers of these names, (count, names)."""
+    result = np.empty((count, len(names)))
+    for k, name in enumerate(names):
+        result[:, k] = values[name]
+    return result
