@@ -90,6 +90,45 @@ def test_models_lists_what_ships(capsys: pytest.CaptureFixture) -> None:
     assert "65.79" in capsys.readouterr().out
 
 
+ROBOT = """<robot name="robot"><link name="hub"><inertial><mass value="5"/>
+<inertia ixx="0.05" iyy="0.09" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial><collision/></link>
+<link name="shank"><inertial><mass value="0.2"/>
+<inertia ixx="0.001" iyy="0.001" izz="0.0001" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="knee" type="revolute"><parent link="hub"/><child link="shank"/><axis xyz="0 1 0"/>
+<limit lower="-2.7" upper="-0.9"/><dynamics friction="1" damping="0.1"/></joint></robot>"""
+
+
+def test_models_says_what_was_understood_of_a_file(
+    capsys: pytest.CaptureFixture, tmp_path: Path
+) -> None:
+    path = tmp_path / "robot.urdf"
+    path.write_text(ROBOT)
+    (found,) = record(capsys, "models", str(path))
+    hub, shank = found["bodies"]
+    assert (hub["mass"], hub["inertia_from"], shank["parent"]) == (5.0, "file", "hub")
+    (knee,) = found["joint_details"]
+    assert (knee["range"], knee["home"], knee["damping"]) == ([-2.7, -0.9], [-0.9], 0.1)
+    assert found["left_out"] == ["1 collision shape"]
+    assert len(found["notes"]) == 3
+    assert main(["models", str(path)]) == 0
+    page = capsys.readouterr().out
+    for words in ("5.2 kg, free in the air", "-2.7 to -0.9", "stands at -0.9", "dry friction",
+                  "1 collision shape"):  # fmt: skip
+        assert words in page
+
+
+def test_models_says_which_masses_come_from_shapes(
+    capsys: pytest.CaptureFixture, tmp_path: Path
+) -> None:
+    path = tmp_path / "ball.xml"
+    path.write_text(
+        '<mujoco><worldbody><body name="ball"><freejoint/><geom size="0.1" contype="0" '
+        'conaffinity="0"/></body></worldbody></mujoco>'
+    )
+    assert main(["models", str(path)]) == 0
+    assert "shapes" in capsys.readouterr().out
+
+
 def test_equations_are_written_whole_or_not_at_all(
     capsys: pytest.CaptureFixture, tmp_path: Path
 ) -> None:

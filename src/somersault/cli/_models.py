@@ -1,15 +1,22 @@
-"""`somersault models`: what ships, with mass and principal inertias."""
+"""`somersault models`: what ships, and what was understood of a file."""
 
 from __future__ import annotations
 
 import argparse
 import json
-from typing import Any
+import math
+import warnings
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from somersault.model import Joint, Model
 
 NAME = "models"
-HELP = "The models that ship, with mass and principal inertias in the pose they are drawn in."
+HELP = "The models that ship, or what was understood of a file: bodies, joints, masses, notes."
 EXAMPLES = """examples:
   somersault models
+  somersault models my_robot.urdf
   somersault models my_robot.xml --json"""
 
 
@@ -22,29 +29,153 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(chosen: argparse.Namespace) -> None:
-    """Print the table."""
-    from somersault.model import load, shipped
+    """Print the table of what ships, or a page for each model that is named."""
+    from somersault.model import shipped
 
-    records = [_record(load(name)) for name in chosen.models or shipped()]
+    records = [_record(name) for name in chosen.models or shipped()]
     if chosen.json:
         print(json.dumps(records))
-        return
-    width = max(len(record["name"]) for record in records)
-    print(f"{'model':<{width}}  {'mass kg':>8}  {'principal inertias 1, 2, 3, kg m²':<34}  joints")
-    for record in records:
-        numbers = record["principal_inertias"]
-        inertias = ", ".join(f"{x:.4g}" for x in numbers) if numbers else "none (fixed base)"
-        joints = ", ".join(record["joints"]) or "none (rigid)"
-        print(f"{record['name']:<{width}}  {record['mass']:>8.4g}  {inertias:<34}  {joints}")
+    elif chosen.models:
+        print("\n\n".join("\n".join(_page(record)) for record in records))
+    else:
+        print("\n".join(_table(records)))
 
 
-def _record(model: Any) -> dict[str, Any]:
+def _record(name: str) -> dict[str, Any]:
+    from somersault._core.errors import SomersaultWarning
+    from somersault.model import load
     from somersault.stability import principal_inertias
 
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("ignore")
+        warnings.simplefilter("always", SomersaultWarning)
+        model = load(name)
     return {
         "name": model.name,
         "mass": model.mass,
         "principal_inertias": principal_inertias(model).tolist() if model.free else None,
         "free": model.free,
         "joints": list(model.speeds),
+        "bodies": _bodies(model),
+        "joint_details": [
+            _joint(joint, body.name) for body in model.bodies for joint in body.joints
+        ],
+        "left_out": list(model.ignored),
+        "notes": list(dict.fromkeys(str(warning.message) for warning in caught)),
     }
+
+
+def _bodies(model: Model) -> list[dict[str, Any]]:
+    return [
+        {
+            "name": body.name,
+            "parent": model.bodies[body.parent].name if body.parent >= 0 else None,
+            "mass": body.mass,
+            "com": list(body.com),
+            "inertia": [list(row) for row in body.inertia],
+            "inertia_from": body.inertia_from,
+        }
+        for body in model.bodies
+    ]
+
+
+def _joint(joint: Joint, body: str) -> dict[str, Any]:
+    follows = joint.follows
+    return {
+        "name": joint.name,
+        "kind": joint.kind,
+        "moves": body,
+        "range": list(joint.limits) if joint.limits is not None else None,
+        "home": list(joint.home),
+        "stiffness": joint.stiffness,
+        "damping": joint.damping,
+        "armature": joint.armature,
+        "follows": follows
+        and {"joint": follows.leader, "factor": follows.factor, "offset": follows.offset},
+    }
+
+
+# ------------------------------------------------------------------------------ what is printed
+
+
+def _table(records: list[dict[str, Any]]) -> list[str]:
+    heads = ("model", "mass kg", "principal inertias 1, 2, 3, kg m²", "joints")
+    return _columns(
+        heads,
+        [
+            (
+                record["name"],
+                f"{record['mass']:.4g}",
+                _inertias(record),
+                ", ".join(record["joints"]) or "none (rigid)",
+            )
+            for record in records
+        ],
+    )
+
+
+def _inertias(record: dict[str, Any]) -> str:
+    numbers = record["principal_inertias"]
+    return ", ".join(f"{x:.4g}" for x in numbers) if numbers else "none (fixed base)"
+
+
+def _page(record: dict[str, Any]) -> list[str]:
+    """All that was understood of one model."""
+    base = "free in the air" if record["free"] else "its base fixed to the ground"
+    lines = [f"{record['name']}: {record['mass']:.6g} kg, {base}"]
+    if record["free"]:
+        lines.append(f"  principal inertias 1, 2, 3: {_inertias(record)} kg m²")
+    lines += _indented(
+        ("body", "on", "mass kg", "mass and inertia from"),
+        [
+            (body["name"], body["parent"] or "", f"{body['mass']:.6g}", body["inertia_from"])
+            for body in record["bodies"]
+        ],
+    )
+    if record["joint_details"]:
+        lines += _indented(
+            ("joint", "kind", "moves", "range rad (m)", "otherwise"),
+            [
+                (
+                    joint["name"],
+                    joint["kind"],
+                    joint["moves"],
+                    _range(joint["range"]),
+                    _otherwise(joint),
+                )
+                for joint in record["joint_details"]
+            ],
+        )
+    return lines + [f"  note: {note}" for note in record["notes"]]
+
+
+def _range(limits: Sequence[float] | None) -> str:
+    return "" if limits is None else f"{limits[0]:.4g} to {limits[1]:.4g}"
+
+
+def _otherwise(joint: dict[str, Any]) -> str:
+    """What else there is to say of a joint."""
+    said = []
+    if joint["kind"] != "ball" and not math.isclose(joint["home"][0], 0.0, abs_tol=1e-12):
+        said.append(f"stands at {joint['home'][0]:.4g}")
+    said += [
+        f"{what} {joint[what]:.4g}" for what in ("stiffness", "damping", "armature") if joint[what]
+    ]
+    if joint["follows"]:
+        leader = joint["follows"]
+        offset = f" {leader['offset']:+.4g}" if leader["offset"] else ""
+        said.append(f"follows {leader['factor']:.4g} × {leader['joint']}{offset}")
+    return ", ".join(said)
+
+
+def _indented(heads: tuple[str, ...], rows: list[tuple[str, ...]]) -> list[str]:
+    return [f"  {line}" for line in _columns(heads, rows)]
+
+
+def _columns(heads: tuple[str, ...], rows: list[tuple[str, ...]]) -> list[str]:
+    """Rows under their heads, numbers' columns as wide as their widest entry."""
+    widths = [max(len(row[k]) for row in (heads, *rows)) for k in range(len(heads))]
+    return [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in (heads, *rows)
+    ]
