@@ -6,13 +6,13 @@ import argparse
 from pathlib import Path
 
 NAME = "reproduce"
-HELP = "Regenerate the figures and tables of the thesis and check its every number."
+HELP = "Regenerate the figures and tables of the thesis, and check its every number."
 EXAMPLES = """examples:
   somersault reproduce
   somersault reproduce ch4 --out report
   somersault reproduce fig4-9 table4-3
 
-Writes OUT/index.html, OUT/claims.json and OUT/figures."""
+Writes OUT/index.html, a page for each chapter, OUT/claims.json, OUT/figures and OUT/tables."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -26,9 +26,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(chosen: argparse.Namespace) -> None:
-    """Write the report and say how many claims hold."""
-    from somersault.thesis import reproduce
+    """Write the report, and print how many claims agree."""
+    from somersault.thesis import reproduce, verdict
 
     claims = reproduce(chosen.ids, chosen.out)
-    held = sum(claim.holds for claim in claims)
-    print(f"{held} of {len(claims)} claims hold; see {chosen.out / 'index.html'}")
+    differ = sum(not claim.holds for claim in claims)
+    print(f"{verdict(len(claims), differ)} See {chosen.out / 'index.html'}")

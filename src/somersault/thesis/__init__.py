@@ -3,7 +3,18 @@
 from somersault.thesis._claims import Claim
 from somersault.thesis._entries import Entry, Result, Table
 from somersault.thesis._errata import ERRATA, Erratum
+from somersault.thesis._page import verdict
 from somersault.thesis._registry import ENTRIES
 from somersault.thesis._reproduce import reproduce
 
-__all__ = ["ENTRIES", "ERRATA", "Claim", "Entry", "Erratum", "Result", "Table", "reproduce"]
+__all__ = [
+    "ENTRIES",
+    "ERRATA",
+    "Claim",
+    "Entry",
+    "Erratum",
+    "Result",
+    "Table",
+    "reproduce",
+    "verdict",
+]

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from somersault._core.errors import SomersaultError
 from somersault._core.files import write
 from somersault.thesis._claims import Claim
-from somersault.thesis._entries import Entry, Result, select
+from somersault.thesis._entries import Entry, Result, Table, select
 from somersault.thesis._errata import ERRATA
-from somersault.thesis._registry import ENTRIES
-
-if TYPE_CHECKING:
-    from somersault.view import Section
+from somersault.thesis._page import ChapterPage, Section, chapter_page, index_page
+from somersault.thesis._registry import CHAPTERS, ENTRIES
 
 
 def reproduce(
@@ -28,16 +28,17 @@ def reproduce(
     """Regenerate what the thesis shows and check what it says.
 
     `ids` are chapters ("ch4") or entries ("fig4-9", "table4-3"); none means everything. Writes
-    figures/ID.svg and .png, claims.json and index.html into `out`, all at the end or none.
+    figures/ID.svg and .png, tables/ID.csv, claims.json, a page for each chapter and index.html
+    into `out`, all at the end or none.
     Raises SomersaultError for an ID that is not there or a place that cannot be written to.
     """
     chosen = select(ids, entries)
     out = Path(out)
     try:
         out.mkdir(parents=True, exist_ok=True)
-        with TemporaryDirectory(prefix=".making-", dir=out) as made:
-            claims = _made(chosen, Path(made), progress)
-            _published(Path(made), out)
+        with TemporaryDirectory(prefix=".making-", dir=out) as folder:
+            claims = _written(chosen, Path(folder), progress)
+            _published(Path(folder), out)
     except OSError as error:
         raise SomersaultError(
             f"the report cannot be written to {out}: {error.strerror or error}; choose another "
@@ -46,32 +47,37 @@ def reproduce(
     return claims
 
 
-def _made(chosen: Sequence[Entry], folder: Path, progress: bool) -> list[Claim]:
+def _written(chosen: Sequence[Entry], folder: Path, progress: bool) -> list[Claim]:
     """Everything, in a folder that nobody sees before it is whole."""
-    from somersault.view import reproduction_page
     from somersault.view import style as look
 
-    sections: list[Section] = []
+    sections: dict[str, list[Section]] = {}
     claims: list[Claim] = []
     for entry in _watched(chosen, progress):
         with look.style():
             result = entry.make()
             if result.figure is not None:
                 _save(result.figure, folder / "figures" / entry.id)
+        if result.table is not None:
+            write(folder / "tables" / f"{entry.id}.csv", _csv(result.table))
         claims += result.claims
-        sections.append(_section(entry, result))
+        sections.setdefault(entry.chapter, []).append(_section(entry, result))
     records = [claim.record() for claim in claims]
     write(folder / "claims.json", json.dumps(records, indent=1, ensure_ascii=False) + "\n")
+    titles = {chapter.id: chapter.title for chapter in CHAPTERS}
+    pages = [ChapterPage(id, titles[id], parts) for id, parts in sections.items()]
+    for page in pages:
+        write(folder / f"{page.id}.html", chapter_page(page))
     errata = [(e.where, e.printed, e.correct, e.why) for e in ERRATA]
-    write(folder / "index.html", reproduction_page(sections, errata))
+    write(folder / "index.html", index_page(pages, errata))
     return claims
 
 
-def _published(made: Path, out: Path) -> None:
-    """Rename every finished file into place, pictures before the page that shows them."""
-    for file in sorted(made.rglob("*"), key=lambda f: (f.parent == made, f.name)):
+def _published(whole: Path, out: Path) -> None:
+    """Rename every finished file into place, pictures before the pages that show them."""
+    for file in sorted(whole.rglob("*"), key=lambda f: (f.parent == whole, f.name)):
         if file.is_file():
-            target = out / file.relative_to(made)
+            target = out / file.relative_to(whole)
             target.parent.mkdir(exist_ok=True)
             file.replace(target)
 
@@ -102,17 +108,23 @@ def _save(figure: Any, stem: Path) -> None:
         write(stem.with_name(f"{stem.name}.{ending}"), look.saved(figure, ending))
 
 
-def _section(entry: Entry, result: Result) -> Section:
-    from somersault.view import Section
+def _csv(table: Table) -> str:
+    """A table's rows under its header."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows([table.header, *table.rows])
+    return text.getvalue()
 
-    table = (result.table.header, result.table.rows) if result.table is not None else None
+
+def _section(entry: Entry, result: Result) -> Section:
+    table = result.table
     return Section(
         entry.id,
         entry.title,
         result.says,
         result.ours,
-        f"figures/{entry.id}" if result.figure is not None else None,
+        None if result.figure is None else f"figures/{entry.id}",
         [claim.record() for claim in result.claims],
-        table,
+        None if table is None else (table.header, table.rows),
+        None if table is None else f"tables/{entry.id}.csv",
         entry.beyond,
     )

@@ -1,4 +1,4 @@
-"""Pictures of models, of their motions and of their stability, and the report page.
+"""Pictures of models, of their motions and of their stability.
 
 What is drawn of a motion is a `somersault.history.History`, whatever made it.
 """
@@ -7,17 +7,12 @@ from somersault.view._contact_sheet import contact_sheet, strip
 from somersault.view._figure import camera, draw_pose
 from somersault.view._histories import time_histories
 from somersault.view._plots import root_loci, stability_chart
-from somersault.view._reproduction import Section, reproduction_page
-from somersault.view._sketch import simplest
 
 __all__ = [
-    "Section",
     "camera",
     "contact_sheet",
     "draw_pose",
-    "reproduction_page",
     "root_loci",
-    "simplest",
     "stability_chart",
     "strip",
     "time_histories",

@@ -11,8 +11,7 @@ from somersault import rigid
 from somersault import stability as st
 from somersault._core.array import Array
 from somersault.dynamics import Equations
-from somersault.model import Model, athlete, load, named_pose
-from somersault.model._pose import pose
+from somersault.model import Model, athlete, load, named_pose, pose
 from somersault.thesis._claims import statement
 from somersault.thesis._entries import Result, Table
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from somersault import stability as st
@@ -11,14 +9,8 @@ from somersault._core.array import Array
 from somersault.model import load
 from somersault.thesis._claims import Claim, number, statement
 from somersault.thesis._entries import Result, Table
-from somersault.thesis.ch4._furrer import (
-    GROWS,
-    MODEL,
-    THREE,
-)
-
-if TYPE_CHECKING:
-    pass
+from somersault.thesis.ch4._furrer import GROWS, MODEL, THREE
+from somersault.thesis.ch4._one_arm_sketch import one_arm_sketch
 
 SIMPLEST, ARM = "simplest", "stiffness.arm"
 PRINTED = {"k1": 0.65, "k3": -0.87, "I_rel": 0.06, "kl1": -0.99}  # Table 4.3
@@ -79,8 +71,6 @@ def fig_4_16() -> Result:
     body, arm = model.bodies
     apart = np.abs(np.array(arm.position) + np.array(arm.com) - np.array(body.com)).max()
     along = np.abs(np.array(arm.joints[0].anchor) - np.array(arm.com)).max()
-    from somersault.view import simplest
-
     return Result(
         "The simplest model that captures passive layout stability: a single arm allowed to pivot "
         "about its centre, the centres of mass of arm and body coincident.",
@@ -103,7 +93,7 @@ def fig_4_16() -> Result:
                 apart == 0 and along == 0,
             ),
         ),
-        simplest(),
+        one_arm_sketch(),
     )
 
 

@@ -1,4 +1,4 @@
-"""Schematic drawings of models."""
+"""Figure 4-16: a sketch of the simplest model."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def simplest() -> Figure:
+def one_arm_sketch() -> Figure:
     """A body and one arm that pivots about the centre of mass of both (figure 4-16)."""
     from matplotlib.patches import Ellipse, FancyArrowPatch, FancyBboxPatch
 
