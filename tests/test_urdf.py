@@ -11,64 +11,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from trees import assert_close
+from robots import ARM, BOX, HUB, LIMIT, MESH, Numbers, joint, link, read, robot
 
 import somersault as so
 from somersault import SomersaultError, SomersaultWarning
-from somersault.model import Follow, Model, load
+from somersault.model import Follow, Model, load, pose
 from somersault.model._mass import mass_matrix
-
-Numbers = tuple[float, ...]
-
-
-def link(name: str, mass: float | None = None, inertia: Numbers = (0, 0, 0), **more: str) -> str:
-    """A link whose inertia is diagonal; without a mass it has no <inertial>."""
-    own = ""
-    if mass is not None:
-        xx, yy, zz = inertia
-        own = (
-            f'<inertial><origin xyz="{more.get("com", "0 0 0")}" rpy="{more.get("rpy", "0 0 0")}"/>'
-            f'<mass value="{mass}"/><inertia ixx="{xx}" iyy="{yy}" izz="{zz}" ixy="0" ixz="0" '
-            'iyz="0"/></inertial>'
-        )
-    return f'<link name="{name}">{own}{more.get("more", "")}</link>'
-
-
-def joint(
-    name: str, parent: str, child: str, axis: str = "1 0 0", kind: str = "continuous", **more: str
-) -> str:
-    return (
-        f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
-        f'<origin xyz="{more.get("at", "0 0 0")}" rpy="{more.get("rpy", "0 0 0")}"/>'
-        f'<axis xyz="{axis}"/>{more.get("more", "")}</joint>'
-    )
-
-
-def robot(*parts: str) -> str:
-    return f'<robot name="robot">{"".join(parts)}</robot>'
-
-
-HUB = link("hub", 5, (0.05, 0.09, 0.1))
-ARM = link("arm", 1, (0.02, 0.03, 0.04), com="0 0 -0.2")
-MESH = '<{0}><geometry><mesh filename="package://bot/meshes/hub.dae"/></geometry></{0}>'
-LIMIT = '<limit lower="{}" upper="{}" effort="1" velocity="1"/>'
-BOX = '<collision><geometry><box size="0.1 0.2 0.1"/></geometry></collision>'
 
 
 @pytest.fixture(autouse=True)
 def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-
-
-def read(text: str | bytes, name: str = "robot.urdf", **how: Any) -> Model:
-    """The model in some text, whatever is said of it."""
-    path = Path(name)
-    path.write_bytes(text.encode() if isinstance(text, str) else text)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", SomersaultWarning)
-        return load(path, **how)
 
 
 def refused(text: str | bytes, name: str = "robot.urdf", **how: Any) -> str:
@@ -202,6 +155,13 @@ def test_a_floating_joint_further_out_is_three_slides_and_a_ball() -> None:
     assert kinds == ["hinge", "slide", "slide", "slide", "ball"]
 
 
+def test_a_knee_drawn_outside_its_range_stands_alike_in_flight_and_spin() -> None:
+    knee = joint("knee", "hub", "shank", "0 1 0", "revolute", more=LIMIT.format(-2.7, -0.9))
+    model = read(robot(HUB, link("shank", 0.2, (1e-3, 1e-3, 1e-4), com="0 0 -0.1"), knee))
+    assert so.spin(model).pose.tolist() == [-0.9]
+    assert so.fly(model, so.Takeoff(spin=5.0), 0.1).joint_coordinates[-1, 0] == pytest.approx(-0.9)
+
+
 # ------------------------------------------------------------------------------------ mimic
 
 FINGERS = (HUB, link("f1", 0.1, (1, 1, 1)), link("f2", 0.1, (1, 1, 1)), link("f3", 0.1, (1, 1, 1)))
@@ -226,6 +186,20 @@ def test_mimic_follows_its_leader_through_others() -> None:
         Follow("j1", -2.0, 1.1),
     ]
     assert model.home.tolist() == pytest.approx([0.0, 0.5, 1.1])
+
+
+def test_a_pose_has_followers_where_their_leader_has_them() -> None:
+    model = read(
+        robot(
+            *FINGERS[:3],
+            joint("j1", "hub", "f1"),
+            joint("j2", "hub", "f2", more=mimic("j1", 'multiplier="-1" offset="0.5"')),
+        )
+    )
+    np.testing.assert_allclose(pose(model, {"j1": [0.2, 0.3]}), [[0.2, 0.3], [0.3, 0.2]])
+    np.testing.assert_allclose(pose(model, {"j1": 0.2, "j2": 0.3}), [0.2, 0.3])
+    with pytest.raises(SomersaultError, match=r"j2=0\.1, but in robot it follows j1.* 0\.3"):
+        pose(model, {"j1": 0.2, "j2": 0.1})
 
 
 def test_mimic_of_a_fixed_joint_stands_at_its_offset() -> None:
@@ -289,24 +263,6 @@ def test_base_decides_otherwise() -> None:
     assert (let_go.free, let_go.mass, let_go.joints) == (True, 1, ())
     assert "'free'" in refused(robot(link("world"), HUB, joint("j", "world", "hub", kind="fixed")))
     assert "base" in refused(free, base="loose")
-
-
-SIX = [(f"{kind}_{axis}", kind, axis) for kind in ("prismatic", "continuous")
-       for axis in ("1 0 0", "0 1 0", "0 0 1")]  # fmt: skip
-
-
-@settings(derandomize=True, max_examples=20, deadline=None)
-@given(st.permutations(SIX), st.sampled_from(["world", "map"]))
-def test_six_virtual_joints_are_a_free_base(order: list[tuple[str, str, str]], root: str) -> None:
-    links = [root, "v1", "v2", "v3", "v4", "v5", "hub"]
-    parts = [link(name) for name in links[:-1]]
-    for k, (name, kind, axis) in enumerate(order):
-        limit = '<limit lower="-9" upper="9" effort="1" velocity="1"/>'
-        parts.append(joint(name, links[k], links[k + 1], axis, kind, more=limit))
-    arm = (ARM, joint("hinge", "hub", "arm", at="0 0.1 0"))
-    model = read(robot(*parts, HUB, *arm))
-    assert model.free
-    assert model == read(robot(HUB, *arm))
 
 
 # ------------------------------------------------------------------- what is read with a warning
@@ -441,78 +397,3 @@ def test_what_tinyxml_forgives_is_forgiven() -> None:
     ):  # fmt: skip
         assert read(written).mass == 5
     assert "UTF-8" in refused(foreign.encode("latin-1"))
-
-
-# ------------------------------------------------------------------------------- random kinds
-
-
-def in_pinocchio(text: str, model: Model, q: np.ndarray) -> np.ndarray:
-    """The mass matrix that pinocchio makes of a file, in our order of speeds."""
-    pin = pytest.importorskip("pinocchio")
-    theirs = pin.buildModelFromXML(text, *([pin.JointModelFreeFlyer()] if model.free else []))
-    at = pin.neutral(theirs)
-    order = [3, 4, 5, 0, 1, 2] if model.free else []
-    for joint, value in zip(model.joints, q, strict=True):
-        there = theirs.joints[theirs.getJointId(joint.name)]
-        at[there.idx_q : there.idx_q + there.nq] = (np.cos(value), np.sin(value))
-        order.append(there.idx_v)
-    upper = np.triu(pin.crba(theirs, theirs.createData(), at))
-    return (upper + np.triu(upper, 1).T)[np.ix_(order, order)]
-
-
-def assert_like_pinocchio(text: str, model: Model) -> None:
-    random = np.random.default_rng(1)
-    equations = so.Equations(model).expression("mass_matrix").function()
-    for _ in range(3):
-        q = random.uniform(-3, 3, len(model.home))
-        theirs = in_pinocchio(text, model, q)
-        assert_close(equations(q, []), theirs, 1e-9)
-        assert_close(mass_matrix(model, q), theirs, 1e-9)
-
-
-sizes = st.floats(0.01, 10)
-places = st.tuples(*[st.floats(-1, 1)] * 3).map(lambda v: " ".join(map(str, v)))
-
-
-@settings(derandomize=True, max_examples=30, deadline=None)
-@given(st.lists(st.tuples(sizes, sizes, sizes, places, places), min_size=2, max_size=4))
-def test_plates_anywhere(plates: list[tuple[float, float, float, str, str]]) -> None:
-    """Flat in any direction: one moment is the sum of the others, up to rounding."""
-    parts = []
-    for k, (mass, one, other, com, turn) in enumerate(plates):
-        inertia = np.roll([one, other, one + other], k)
-        parts.append(link(f"l{k}", mass, tuple(inertia), com=com, rpy=turn))
-        if k:
-            parts.append(joint(f"j{k}", f"l{k - 1}", f"l{k}", "0.6 0 0.8", at=com, rpy=turn))
-    text = robot(*parts)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        model = read(text)
-    assert_like_pinocchio(text, model)
-
-
-@settings(derandomize=True, max_examples=30, deadline=None)
-@given(st.lists(st.tuples(sizes, sizes, st.booleans()), min_size=1, max_size=4))
-def test_rods_and_points_on_hinges(rods: list[tuple[float, float, bool]]) -> None:
-    parts = [HUB]
-    for k, (mass, size, point) in enumerate(rods):
-        inertia = (0, 0, 0) if point else (mass * size**2 / 12, 0, mass * size**2 / 12)
-        parts.append(link(f"l{k}", mass, inertia, com=f"0 {size / 2} 0"))
-        parent = f"l{k - 1}" if k else "hub"
-        parts.append(joint(f"j{k}", parent, f"l{k}", "1 0 0", at="0.1 0.3 0"))
-    text = robot(*parts)
-    assert_like_pinocchio(text, read(text))
-
-
-@settings(derandomize=True, max_examples=30, deadline=None)
-@given(st.permutations(["1 0 0", "0 1 0", "0 0 1"]), places, st.integers(2, 3))
-def test_massless_links_between_hinges(axes: list[str], turn: str, count: int) -> None:
-    parts = [HUB, ARM]
-    names = ["hub", *(f"cross{k}" for k in range(count - 1)), "arm"]
-    parts += [link(name) for name in names[1:-1]]
-    for k in range(count):
-        at = "0 0 0.1" if k == 0 else "0 0 0"
-        rpy = turn if k == 0 else "0 0 0"
-        parts.append(joint(f"j{k}", names[k], names[k + 1], axes[k], at=at, rpy=rpy))
-    text = robot(*parts)
-    assert_like_pinocchio(text, read(text))

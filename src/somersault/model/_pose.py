@@ -11,16 +11,17 @@ from somersault._core.array import Array
 from somersault._core.checks import by_name
 from somersault._core.errors import SomersaultError
 from somersault.model._mirror import sides
-from somersault.model._types import Joint, Model
+from somersault.model._types import LIMIT_SLACK, Follow, Joint, Model
 
 
 def pose(model: Model, angles: Mapping[str, ArrayLike] | None) -> Array:
-    """Joint coordinates (…, coordinates) of a pose given by name; the rest stay as drawn.
+    """Joint coordinates (…, coordinates) of a pose given by name; the rest stand at `model.home`.
 
     Angles may be arrays and broadcast. A pair's common name sets both sides, mirrored. A
     ball's `name.1`, `name.2`, `name.3` are the components of a rotation vector along its
-    body's axes. Raises SomersaultError for an unknown name, a value that is not finite, or
-    one outside the joint's limits.
+    body's axes. A joint that follows another stands where that one has it. Raises
+    SomersaultError for an unknown name, a value that is not finite, one outside the joint's
+    limits, or one at which a joint does not follow its leader.
     """
     given = {
         name: _numbers(name, value)
@@ -41,7 +42,22 @@ def pose(model: Model, angles: Mapping[str, ArrayLike] | None) -> Array:
         half = np.linalg.norm(turn, axis=-1, keepdims=True) / 2
         vector = np.sinc(half / np.pi) / 2 * turn
         q[..., model.coordinate_slice(name)] = np.concatenate([np.cos(half), vector], -1)
+    for joint in model.joints:
+        if joint.follows is not None:
+            _follow(model, joint, joint.follows, q, joint.name in given)
     return q
+
+
+def _follow(model: Model, joint: Joint, follow: Follow, q: Array, named: bool) -> None:
+    """Put a joint where the one that it follows has it."""
+    own = model.coordinate_slice(joint.name)
+    followed = follow.offset + follow.factor * q[..., model.coordinate_slice(follow.leader)]
+    if named and np.abs(q[..., own] - followed).max() > LIMIT_SLACK:
+        raise SomersaultError(
+            f"pose {joint.name}={q[..., own].flat[0]:g}, but in {model.name} it follows "
+            f"{follow.leader}, which has it at {followed.flat[0]:g}; leave it out"
+        )
+    q[..., own] = followed
 
 
 def _numbers(name: str, value: ArrayLike) -> Array:
@@ -68,7 +84,7 @@ def _check_limits(model: Model, joint: Joint, value: Array) -> None:
     if joint.limits is None:
         return
     low, high = joint.limits
-    out = value[(value < low - 1e-9) | (value > high + 1e-9)]
+    out = value[(value < low - LIMIT_SLACK) | (value > high + LIMIT_SLACK)]
     if out.size:
         raise SomersaultError(
             f"pose {joint.name}={out.flat[0]:g} is outside the joint's limits in {model.name}; "

@@ -132,7 +132,7 @@ def takeoff_angle(joint: Joint, angle: Any) -> Any:
     """An angle at takeoff, the model's own where none is given; SomersaultError beyond limits."""
     if joint.kind == "ball":
         return (0.0, 0.0, 0.0) if angle is None else angle
-    at = joint.reference if angle is None else angle
+    at = joint.home[0] if angle is None else angle
     check_limits(joint, (at,))
     return at
 
