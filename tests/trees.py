@@ -17,7 +17,7 @@ import numpy as np
 
 from somersault.attitude import matrix_from_quaternion
 from somersault.dynamics import Equations
-from somersault.model import GROUND, Body, Joint, Model, as_matrix, as_vector, load
+from somersault.model import GROUND, Body, Joint, Model, as_matrix, as_vector, load, mjcf
 
 KINDS = ("hinge", "slide", "ball")
 
@@ -196,42 +196,16 @@ def coordinate_rates(model: Model, q: np.ndarray, v: np.ndarray) -> np.ndarray:
 
 def to_mujoco(model: Model, timestep: float = 1e-3) -> mujoco.MjModel:
     """The same tree, without contact, for the Runge–Kutta integrator."""
-    spec = mujoco.MjSpec()
-    spec.compiler.degree = False
-    spec.option.gravity = [0.0, 0.0, 0.0]
-    spec.option.timestep = timestep
-    made: list[Any] = []
-    for body in model.bodies:
-        above = spec.worldbody if body.parent == GROUND else made[body.parent]
-        own = above.add_body(name=body.name, pos=body.position, mass=body.mass, ipos=body.com)
-        mujoco.mju_mat2Quat(own.quat, np.ravel(body.rotation))
-        own.explicitinertial = True
-        (xx, xy, xz), (_, yy, yz), (_, _, zz) = body.inertia
-        own.fullinertia = [xx, yy, zz, xy, xz, yz]
-        if model.free and body.parent == GROUND:
-            own.add_freejoint()
-        for joint in body.joints:
-            _add_to_mujoco(own, joint)
-        made.append(own)
-    compiled = spec.compile()
+    compiled = mujoco.MjModel.from_xml_string(mjcf(model))
+    compiled.opt.timestep = timestep
     quiet(compiled)
     return compiled
 
 
-def _add_to_mujoco(body: Any, joint: Joint) -> None:
-    kind = getattr(mujoco.mjtJoint, f"mjJNT_{joint.kind.upper()}")
-    own = body.add_joint(name=joint.name, type=kind, axis=joint.axis, pos=joint.anchor)
-    own.ref, own.springref, own.armature = joint.reference, joint.rest, joint.armature
-    for name in ("stiffness", "damping"):
-        value = getattr(joint, name)
-        # From MuJoCo 3.4 on these are the coefficients of a polynomial.
-        setattr(own, name, [value, 0.0, 0.0] if np.ndim(getattr(own, name)) else value)
-
-
 def quiet(m: mujoco.MjModel) -> None:
-    """Leave only what flies: no contacts, limits or actuators; Runge–Kutta; energy on."""
+    """Leave only what flies: no contacts, limits, gears or actuators; Runge–Kutta; energy on."""
     off = mujoco.mjtDisableBit
-    for bit in (off.mjDSBL_CONTACT, off.mjDSBL_LIMIT, off.mjDSBL_ACTUATION):
+    for bit in (off.mjDSBL_CONTACT, off.mjDSBL_LIMIT, off.mjDSBL_ACTUATION, off.mjDSBL_EQUALITY):
         m.opt.disableflags |= int(bit)
     m.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
     m.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4

@@ -156,6 +156,9 @@ from .model import (
 from .model import (
     shipped as shipped,
 )
+from .model import (
+    write_mjcf as write_mjcf,
+)
 from .motion import (
     Motion as Motion,
 )

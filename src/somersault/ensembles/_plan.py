@@ -25,7 +25,7 @@ from somersault.flight._batch import Batch
 from somersault.flight._system import System
 from somersault.flight._takeoff import Takeoff
 from somersault.flight._values import Name
-from somersault.model import Model
+from somersault.model import Model, model_digest
 
 SAMPLE = "sample"
 MOST_FLIGHTS = 10**11
@@ -185,7 +185,7 @@ class Plan:
         return {
             "model": self.model.name,
             "axes": list(self.model.axes),
-            "model_sha256": hashlib.sha256(repr(self.model).encode()).hexdigest(),
+            "model_sha256": model_digest(self.model),
             "duration": self.duration,
             "until": self.until,
             "accuracy": self.accuracy,

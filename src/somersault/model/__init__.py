@@ -17,8 +17,10 @@ from somersault.model._mirror import (
     sides,
 )
 from somersault.model._mounted import Mount, mounted
+from somersault.model._plain import model_digest, plain_form
 from somersault.model._pose import pose, spread
 from somersault.model._skeleton import model_shapes
+from somersault.model._to_mjcf import mjcf, write_mjcf
 from somersault.model._types import (
     FREE_IT,
     GROUND,
@@ -60,10 +62,13 @@ __all__ = [
     "merge_welded",
     "mirror_images",
     "mirror_pairs",
+    "mjcf",
+    "model_digest",
     "model_shapes",
     "mounted",
     "named_pairs",
     "named_pose",
+    "plain_form",
     "pose",
     "pose_names",
     "reflection",
@@ -71,4 +76,5 @@ __all__ = [
     "shipped",
     "sides",
     "spread",
+    "write_mjcf",
 ]

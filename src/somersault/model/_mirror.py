@@ -100,7 +100,8 @@ class _Drawn:
 
 
 def _drawn(model: Model) -> list[_Drawn]:
-    rotations, origins = body_frames(model, model.home)
+    drawn = [(1.0, 0.0, 0.0, 0.0) if j.kind == "ball" else (j.reference,) for j in model.joints]
+    rotations, origins = body_frames(model, [x for joint in drawn for x in joint])
     return [
         _Drawn(
             rotation,

@@ -131,6 +131,12 @@ class Model:
         object.__setattr__(self, "axes", as_axes(self.axes))
         _check(self)
 
+    def __repr__(self) -> str:
+        base = "free" if self.free else "on a fixed base"
+        counts = [(len(self.bodies), "body", "bodies"), (len(self.joints), "joint", "joints")]
+        parts = [f"{n} {one if n == 1 else many}" for n, one, many in counts]
+        return f"<Model {self.name!r}: {', '.join(parts)}, {self.mass:g} kg, {base}>"
+
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
         """Every joint, in the order of the bodies: the order of all coordinate vectors."""

@@ -323,7 +323,6 @@ def _left_out(m: Any) -> list[str]:
     contacts = int(np.count_nonzero(m.geom_contype | m.geom_conaffinity))
     counts = {
         "geom that could touch": contacts,
-        "mesh": m.nmesh,
         "skin": m.nskin,
         "camera": m.ncam,
         "light": m.nlight,
@@ -334,7 +333,7 @@ def _left_out(m: Any) -> list[str]:
         "inactive equality constraint": int(m.neq - np.count_nonzero(m.eq_active0)),
         "keyframe": m.nkey,
     }
-    plural = {"mesh": "meshes", "geom that could touch": "geoms that could touch"}
+    plural = {"geom that could touch": "geoms that could touch"}
     return [
         f"{count} {name if count == 1 else plural.get(name, name + 's')}"
         for name, count in counts.items()
