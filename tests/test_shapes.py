@@ -28,7 +28,7 @@ from somersault.model.shapes import (
     Triangles,
     loft,
 )
-from somersault.view import camera, draw_pose
+from somersault.view import camera, contact_sheet, draw_pose
 from somersault.view import style as look
 
 SHIPPED = files("somersault.model") / "shipped"
@@ -337,6 +337,21 @@ def test_equal_models_are_each_drawn_with_their_own_shapes() -> None:
             ax = look.figure().add_subplot()
             draw_pose(ax, model, model.home, np.eye(3), camera(30, 10))
         assert len(ax.patches) == sum(len(body.shapes) for body in model.bodies)
+
+
+def test_flights_of_equal_models_are_each_drawn_with_their_own_shapes() -> None:
+    """They share one compiled system."""
+    doll = so.load("doll")
+    ball = (Sphere(radius=0.5),)
+    other = replace(doll, bodies=tuple(replace(body, shapes=ball) for body in doll.bodies))
+    one, two = (so.fly(model, so.Takeoff(spin=5.0), 0.1) for model in (doll, other))
+    assert one.system is two.system
+    assert one.model is doll
+    assert two.model is other
+    for flight, count in ((one, 6), (two, 3)):
+        assert len(contact_sheet(flight, [0.0, 0.1]).axes[0].patches) == 2 * count
+    swung = so.swing(hung(Path()), {"bar": 0.1}, 0.1)
+    assert len(contact_sheet(swung, [0.0]).axes[0].patches) == 7
 
 
 def test_bodies_that_become_one_keep_all_their_shapes() -> None:

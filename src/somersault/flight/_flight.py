@@ -44,8 +44,12 @@ class Landing:
 
 @dataclass(frozen=True, eq=False)
 class Flight:
-    """One flight, made by `fly`: a `somersault.history.History`; `dataset` is all of it."""
+    """One flight, made by `fly`: a `somersault.history.History`; `dataset` is all of it.
 
+    Its `model` is the one that was given to fly, with its shapes; `system.model` is equal to it.
+    """
+
+    model: Model
     system: System
     start: Start
     position: Array
@@ -64,18 +68,13 @@ class Flight:
     @cached_property
     def _angles(self) -> Array:
         """Somersault, tilt, twist at every point, unwrapped, (points, 3)."""
-        path = unwrapped_angles(self._states[:, :4], self.system.model.axes)
+        path = unwrapped_angles(self._states[:, :4], self.model.axes)
         return _from(path, self.start.angles)
 
     @property
     def angles(self) -> Array:
         """Somersault, tilt and twist at the sample times, unwrapped, (time, 3), rad."""
         return self._angles[self._keep]
-
-    @property
-    def model(self) -> Model:
-        """What flew."""
-        return self.system.model
 
     @property
     def base_quaternion(self) -> Array:
@@ -143,7 +142,7 @@ class Flight:
 
         return xr.DataArray(
             self._loads[:, 6:],
-            {"time": self.times, "joint_speed": list(self.system.model.speeds)},
+            {"time": self.times, "joint_speed": list(self.model.speeds)},
             ("time", "joint_speed"),
             "joint_torque",
             {"units": "N m or N"},
@@ -161,7 +160,7 @@ class Flight:
         q, u = self._joints
         still = np.concatenate([self.angular_velocity, np.zeros((len(u), 3)), u], 1)
         linear = self.system.equations.momentum(q, still)[:, 3:]
-        still[:, 3:6] = -linear / self.system.model.mass
+        still[:, 3:6] = -linear / self.model.mass
         return still
 
     @cached_property
@@ -202,7 +201,7 @@ class Flight:
         q, _ = self._joints
         total = np.zeros(len(q))
         for plan in self.start.plans:
-            where = self.system.model.coordinate_slice(plan.joint.name)
+            where = self.model.coordinate_slice(plan.joint.name)
             total += plan.does.energy(plan.joint, q[:, where])
         return total
 
@@ -236,7 +235,7 @@ class Flight:
         return Landing(
             float(time), somersault, tilt, twist,
             state[:4] / np.linalg.norm(state[:4]), omega[0],
-            dict(zip(self.system.model.coordinates, q[0].tolist(), strict=True)), self.ended,
+            dict(zip(self.model.coordinates, q[0].tolist(), strict=True)), self.ended,
         )  # fmt: skip
 
     @cached_property
@@ -268,7 +267,7 @@ class Flight:
         }  # fmt: skip
 
     def _coordinates(self) -> dict[str, Any]:
-        model = self.system.model
+        model = self.model
         return {
             "time": ("time", self.times, {"units": "s"}),
             "component": list("wxyz"),
@@ -279,7 +278,7 @@ class Flight:
         }
 
     def _attributes(self) -> dict[str, Any]:
-        model = self.system.model
+        model = self.model
         return {
             "model": model.name, "axes": list(model.axes), "ended": self.ended, "steps": self.steps,
         }  # fmt: skip

@@ -44,7 +44,7 @@ def flown(batch: Batch, times: Array, gravity: Array, accuracy: float, steps: in
         np.asarray(x, float) for x in (batch.takeoff.position, batch.takeoff.velocity)
     )
     return Flight(
-        batch.system, begun.start, position, velocity, gravity, moments, states, keep,
+        batch.model, batch.system, begun.start, position, velocity, gravity, moments, states, keep,
         begun.course, STATUS[status], int(solution.steps[0]),
     )  # fmt: skip
 
