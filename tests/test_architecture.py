@@ -11,8 +11,8 @@ import somersault
 
 SOURCE = Path(somersault.__file__).parent
 ROOMS = [
-    "_core", "attitude", "rigid", "model", "engine", "dynamics", "motion", "history", "stability",
-    "view", "flight", "ensembles", "spec", "thesis", "cli",
+    "_core", "attitude", "simulation", "rigid", "model", "engine", "dynamics", "motion", "history",
+    "stability", "view", "flight", "ensembles", "spec", "thesis", "cli",
 ]  # fmt: skip
 MOST_LINES = 420
 

@@ -251,11 +251,10 @@ def flown(model: so.Model, takeoff: so.Takeoff, by: float, until: Any) -> Any:
         "leant": so.Vary(adds_to="takeoff.tilt", normal=[0.0, 0.05]),
         "twisted": so.Vary(adds_to="takeoff.twist", normal=[0.0, 0.05]),
     }
-    report = replace(REPORT, quantities=(*REPORT.quantities, "landing_error"),
-                     target={"somersault": by * 12.0, "twist": 0.5})  # fmt: skip
     return so.ensemble(
-        model, takeoff, 1.5, vary, size=24, seed=3, report=report, accuracy=1e-11, until=until
-    ).dataset
+        model, takeoff, 1.5, vary, size=24, seed=3, report=REPORT, accuracy=1e-11, until=until,
+        against={"somersault": by * 12.0, "twist": 0.5},
+    ).dataset  # fmt: skip
 
 
 @every_order
@@ -266,7 +265,7 @@ def test_ensembles(axes: Axes, until: Any) -> None:
     other = flown(redrawn(model, axes), retold(takeoff, axes), by, until)
     assert (ours["ended"] == other["ended"]).all()
     if until:
-        assert (ours["ended"] == so.ensembles.ENDINGS.index("event")).any()
+        assert (ours["ended"] == so.flight.ENDINGS.code("event")).any()
     for name in ours.data_vars:
         if name in ("steps", "ended"):
             continue

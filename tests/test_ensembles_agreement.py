@@ -11,8 +11,7 @@ import numpy as np
 
 import somersault as so
 from somersault.attitude import angle_rates
-from somersault.ensembles import ENDINGS
-from somersault.flight import JointTakeoff, Takeoff
+from somersault.flight import ENDINGS, JointTakeoff, Takeoff
 from somersault.model import Model
 
 SPIN = 8.64
@@ -56,7 +55,7 @@ def agree(
         one = made.isel(at)
         single_model, single = flown({name: float(one[name]) for name in vary})
         wanted = so.fly(single_model, single, duration, accuracy=ACCURACY, until=until)
-        assert ENDINGS[int(one.ended)] == wanted.ended
+        assert ENDINGS.words[int(one.ended)] == wanted.ended
         expected = told(wanted)
         for name in ("time", *names):
             np.testing.assert_allclose(float(one[name]), expected[name], **NEAR, err_msg=name)
@@ -88,8 +87,8 @@ def test_the_end_at_a_quarter_twist() -> None:
         lambda v: ("furrer", Takeoff(tilt=0.01, spin=SPIN, joints=held(v["angle"], 34.0))),
         duration=3.0, until="quarter twist",
     )  # fmt: skip
-    assert {ENDINGS[int(k)] for k in made.ended.values} == {"event", "duration"}
-    twisted = np.abs(made.twist.values[made.ended.values == ENDINGS.index("event")])
+    assert {ENDINGS.words[int(k)] for k in made.ended.values} == {"event", "duration"}
+    twisted = np.abs(made.twist.values[made.ended.values == ENDINGS.code("event")])
     np.testing.assert_allclose(twisted, np.pi / 2, atol=1e-9)
 
 

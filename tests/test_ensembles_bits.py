@@ -14,13 +14,14 @@ import zarr
 
 import somersault as so
 from somersault.engine import processor
-from somersault.ensembles import _store
-from somersault.ensembles._ensemble import STEPS, carried_out, plan
-from somersault.ensembles._plan import Plan
-from somersault.flight import JointTakeoff, Takeoff
+from somersault.ensembles import Plan, _store, carried_out, plan
+from somersault.flight import JointTakeoff, Takeoff, flights
 
 
-def layout(size: int = 130, sequence: str = "random", grid: int = 3, **other: Any) -> Plan:
+def layout(
+    size: int = 130, sequence: str = "random", grid: int = 3, seed: int = 3, tilt: float = 0.02,
+    **other: Any,
+) -> Plan:  # fmt: skip
     """Every kind of number at once: grids, draws, a list, moves, masses, events, histories."""
     joints = {
         "left_shoulder": JointTakeoff("sprung", 1.2, stiffness=30.0, hold=True, damping=0.1),
@@ -38,13 +39,13 @@ def layout(size: int = 130, sequence: str = "random", grid: int = 3, **other: An
         del vary["listed"]
     report = so.Report(
         ("tilt", "twist", "somersaults", "left_shoulder", "landing_error"), ("tilt",), ("twist",),
-        4, {"tilt": 0.0, "left_shoulder": 1.2},
+        4,
     )  # fmt: skip
-    takeoff = Takeoff(tilt=0.02, spin=8.64, joints=joints)
-    made = plan(
-        "furrer", takeoff, 1.0, vary, size, 3, sequence, report, 1e-7, "quarter twist", STEPS
-    )
-    return replace(made, **other) if other else made
+    given = {
+        "model": "furrer", "takeoff": Takeoff(tilt=tilt, spin=8.64, joints=joints),
+        "report": report, "against": {"tilt": 0.0, "left_shoulder": 1.2}, "until": "quarter twist",
+    }  # fmt: skip
+    return plan(flights(**{**given, **other}), vary, size, seed, sequence)
 
 
 def same(some: xr.Dataset, other: xr.Dataset) -> None:
@@ -83,7 +84,7 @@ def test_any_flight_by_itself(whole: xr.Dataset) -> None:
     """Its numbers are of its place, not of where its chunk begins."""
     made = layout()
     for first, last in ((0, 1), (129, 131), (388, 390), (5, 300)):
-        rows = made.fly(first, last)
+        rows = made.run(first, last)
         for name, values in rows.items():
             flat = whole[name].values.reshape(390, *values.shape[1:])
             np.testing.assert_array_equal(values, flat[first:last], err_msg=name)
@@ -93,7 +94,7 @@ def test_any_flight_by_itself(whole: xr.Dataset) -> None:
 def test_however_many_are_packed_together(
     whole: xr.Dataset, together: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("somersault.ensembles._plan._TOGETHER", together)
+    monkeypatch.setattr("somersault.flight._many._TOGETHER", together)
     same(carried_out(layout(), chunk=200, threads=1).dataset, whole)
 
 
@@ -143,7 +144,7 @@ def test_what_is_finished_is_not_flown_again(
 ) -> None:
     file = tmp_path / "a.zarr"
     carried_out(layout(20), file, chunk=10)
-    monkeypatch.setattr(Plan, "fly", lambda *_: pytest.fail("it was all there"))
+    monkeypatch.setattr(Plan, "run", lambda *_: pytest.fail("it was all there"))
     assert int((carried_out(layout(20), file).dataset.ended == 255).sum()) == 0
 
 
@@ -164,8 +165,8 @@ def test_a_store_of_another_specification_is_left_as_it_is(tmp_path: Path) -> No
         "steps": layout(20, steps=99),
         "vary.K.values": layout(20, grid=4), "until": layout(20, until=None),
         "sample.sequence": layout(20, sequence="sobol"), "duration": layout(20, duration=1.5),
-        "takeoff.tilt": layout(20, takeoff=replace(layout(20).takeoff, tilt=0.021)),
-        "model_sha256": layout(20, model=replace(layout(20).model, ignored=("sites",))),
+        "takeoff.tilt": layout(20, tilt=0.021),
+        "model_sha256": layout(20, model=replace(so.load("furrer"), ignored=("sites",))),
     }  # fmt: skip
     for key, other in others.items():
         with pytest.raises(so.SomersaultError, match=f"\\({key} differs\\)"):
@@ -179,8 +180,8 @@ def test_a_store_of_other_versions_is_not_gone_on_with(
 ) -> None:
     file = tmp_path / "a.zarr"
     carried_out(layout(20), file)
-    engines = layout(20).engines | {"numpy": "0.0.1"}
-    monkeypatch.setattr(Plan, "engines", property(lambda self: engines))
+    other = layout(20).versions | {"numpy": "0.0.1"}
+    monkeypatch.setattr(Plan, "versions", property(lambda self: other))
     with pytest.raises(so.SomersaultError, match="begun with numpy"):
         carried_out(layout(20), file)
 

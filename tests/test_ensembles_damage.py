@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 import somersault as so
-from somersault.ensembles import _store
-from somersault.ensembles._ensemble import plan
+from somersault.ensembles import _store, plan
+from somersault.ensembles._chunks import chunked
+from somersault.flight import flights
 
 VARY = {
     "start": so.Vary(adds_to="takeoff.tilt", normal=(0, 0.1)),
@@ -53,18 +54,17 @@ def test_a_whole_variable_may_be_lost(tmp_path: Path) -> None:
 
 def test_flights_that_all_failed_are_not_flown_for_ever(tmp_path: Path) -> None:
     store = tmp_path / "s.zarr"
-    flown(store, steps=1)
-    made = plan(
-        "book", so.Takeoff(spin=5.0), 0.3, VARY, 50, 0, "random",
-        so.Report(("tilt",), history=("twist",), samples=3), 1e-7, None, 1,
-    )  # fmt: skip
+    with pytest.warns(so.SomersaultWarning, match=r"100 of 100 .*too many steps: 100"):
+        flown(store, steps=1)
+    report = so.Report(("tilt",), history=("twist",), samples=3)
+    made = plan(flights("book", so.Takeoff(spin=5.0), 0.3, report=report, steps=1), VARY, 50)
     cut = _store.resume(store, made)
     assert _store.finished(store, made, cut) == set(range(len(cut)))
 
 
 def test_two_programs_may_begin_one_store(tmp_path: Path) -> None:
-    made = plan("book", so.Takeoff(spin=5.0), 0.3, VARY, 50, 0, "random", ["tilt"], 1e-7, None, 9)
-    store, cut = tmp_path / "s.zarr", _store.layout(made.dims, 7)
-    _store.create(store, made, cut)
-    _store.create(store, made, cut)
+    made = plan(flights("book", so.Takeoff(spin=5.0), 0.3, report=["tilt"]), VARY, 50)
+    store, chunks = tmp_path / "s.zarr", chunked(made.dims, 7)
+    _store.create(store, made, chunks)
+    _store.create(store, made, chunks)
     assert [p.name for p in tmp_path.iterdir()] == ["s.zarr"]

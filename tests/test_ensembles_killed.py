@@ -17,7 +17,7 @@ import pytest
 import xarray as xr
 
 import somersault as so
-from somersault.ensembles._ensemble import carried_out
+from somersault.ensembles import carried_out
 from somersault.spec import read_ensemble
 
 SPEC = """

@@ -14,7 +14,6 @@ from scipy.stats import binomtest
 import somersault as so
 from somersault.cli import main
 from somersault.ensembles import (
-    ENDINGS,
     _selection,
     _sensitivity,
     _summary,
@@ -22,12 +21,17 @@ from somersault.ensembles import (
     fraction,
     quantiles,
     sensitivity,
+    summary,
     within,
 )
-from somersault.ensembles._summary import summary
 from somersault.ensembles._vary import draws
+from somersault.flight import ENDINGS
 
-LOST, NOT_YET = ENDINGS.index("not finite"), 255
+LOST, NOT_YET = ENDINGS.code("not finite"), 255
+MEANT = {
+    "flag_meanings": "duration event too_many_steps not_finite no_takeoff",
+    "failures": "too_many_steps not_finite no_takeoff",
+}
 
 
 def dataset(values: np.ndarray, ended: np.ndarray, dims: tuple[str, ...]) -> xr.Dataset:
@@ -35,7 +39,7 @@ def dataset(values: np.ndarray, ended: np.ndarray, dims: tuple[str, ...]) -> xr.
         {
             "tilt": (dims, values, {"units": "rad"}),
             "landing_error": (dims, np.abs(values), {"units": "rad"}),
-            "ended": (dims, ended.astype("u1")),
+            "ended": (dims, ended.astype("u1"), MEANT),
         }
     )
 
@@ -44,7 +48,7 @@ def dataset(values: np.ndarray, ended: np.ndarray, dims: tuple[str, ...]) -> xr.
 @pytest.mark.parametrize("confidence", [0.95, 0.5])
 def test_shares_have_the_exact_binomial_interval(hits: int, count: int, confidence: float) -> None:
     good = xr.DataArray(np.arange(count) < hits, dims="sample")
-    found = fraction(good, xr.zeros_like(good, "u1"), confidence=confidence)
+    found = fraction(good, confidence=confidence)
     wanted = binomtest(hits, count).proportion_ci(confidence, "exact")
     assert float(found.fraction) == pytest.approx(hits / count)
     assert float(found.low) == pytest.approx(wanted.low, abs=1e-12)
@@ -55,8 +59,9 @@ def test_shares_have_the_exact_binomial_interval(hits: int, count: int, confiden
 def test_shares_count_what_failed_and_leave_out_what_is_not_flown() -> None:
     good = xr.DataArray([[True] * 6, [True] * 6], dims=("K", "sample"))
     ended = xr.DataArray(
-        np.array([[0, 1, LOST, 4, 2, NOT_YET], [NOT_YET] * 6], "u1"), dims=("K", "sample")
-    )
+        np.array([[0, 1, LOST, 4, 2, NOT_YET], [NOT_YET] * 6], "u1"), dims=("K", "sample"),
+        attrs=MEANT,
+    )  # fmt: skip
     np.testing.assert_array_equal(failed(ended)[0], [False, False, True, True, True, False])
     found = fraction(good, ended)
     np.testing.assert_array_equal(found.flights, [5, 0])
@@ -285,7 +290,7 @@ def test_the_command_says_which_indices_it_prints(
 def test_a_quick_ranking_takes_some_of_the_samples(monkeypatch: pytest.MonkeyPatch) -> None:
     data = ishigami("sobol", 16384)
     monkeypatch.setattr(_sensitivity, "_QUICK", 6 * 8192)  # 2 rankings of 3 quantities
-    found, used = _sensitivity.quick(data, ["y"])
+    found, used = _sensitivity.quick_sensitivity(data, ["y"])
     assert used == 8192
     assert list(found["y"]) == ["first_order"]
     for name in NAMES:
@@ -293,11 +298,11 @@ def test_a_quick_ranking_takes_some_of_the_samples(monkeypatch: pytest.MonkeyPat
     whole = sensitivity(data, "y")
     assert not np.array_equal(found["y"].first_order, whole.first_order)
     monkeypatch.undo()
-    found, used = _sensitivity.quick(data, ["y"])
+    found, used = _sensitivity.quick_sensitivity(data, ["y"])
     assert used == 16384
     np.testing.assert_array_equal(found["y"].first_order, whole.first_order)
     data = ishigami("saltelli", 5 * 1024)
-    found, used = _sensitivity.quick(data, ["y"])
+    found, used = _sensitivity.quick_sensitivity(data, ["y"])
     assert used == 5 * 1024
     np.testing.assert_array_equal(found["y"].total, sensitivity(data, "y").total)
 
@@ -305,7 +310,7 @@ def test_a_quick_ranking_takes_some_of_the_samples(monkeypatch: pytest.MonkeyPat
 def test_of_many_samples_some_are_ranked() -> None:
     data = ishigami("random", 100_000).isel(K=[0])
     data = data.assign({f"y{k}": data.y for k in range(24)})
-    _, used = _sensitivity.quick(data, [f"y{k}" for k in range(24)])
+    _, used = _sensitivity.quick_sensitivity(data, [f"y{k}" for k in range(24)])
     assert used == 2**20 // 72
 
 

@@ -114,7 +114,7 @@ MISTAKES: dict[str, Callable[[], Any]] = {
     "path must be the path": lambda: so.Ensemble.open(3),
     "report.quantities must be a list": lambda: so.Report("tilt"),
     "report.samples must be a whole": lambda: so.Report(samples="many"),
-    "target must be given by name": lambda: so.Report(target=[1.0]),
+    "against, unless it is a Flight, must be given by name": lambda: ensemble(against=[1.0]),
     "vary.t.unit must be a text": lambda: ensemble(
         vary={"t": so.Vary(adds_to="takeoff.tilt", normal=[0.0, 0.1], unit=3)}
     ),
@@ -143,7 +143,7 @@ def test_one_sentence(said: str) -> None:
 
 @pytest.fixture(scope="module")
 def landings() -> so.Ensemble:
-    return ensemble(report=so.Report(("tilt", "landing_error"), target={"tilt": 0.0}))
+    return ensemble(report=["tilt"], against={"tilt": 0.0})
 
 
 @pytest.mark.parametrize(

@@ -80,8 +80,8 @@ def test_samples_and_turns_are_not_counted_as_steps() -> None:
 
 
 def test_flights_alone_and_together_are_given_up_alike() -> None:
-    alone, together = (inspect.signature(f).parameters["steps"] for f in (so.Maneuver, so.ensemble))
-    assert alone.default == together.default == 100_000
+    both = (inspect.signature(f).parameters["steps"] for f in (so.Maneuver, so.flight.flights))
+    assert [steps.default for steps in both] == [100_000, 100_000]
 
 
 @pytest.mark.parametrize("steps", [0, -1, 1.5, True, "many", 10**10])

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import somersault as so
-from somersault.ensembles import landing_derivatives, landing_map, landing_target
+from somersault.ensembles import landing_derivatives, landing_map
+from somersault.flight import landing_target
 
 TWIST = so.arm_tilt(duration=0.8)
 

@@ -28,6 +28,9 @@ from . import (
     rigid as rigid,
 )
 from . import (
+    simulation as simulation,
+)
+from . import (
     spec as spec,
 )
 from . import (
@@ -44,9 +47,6 @@ from ._core.errors import SomersaultWarning as SomersaultWarning
 from .dynamics import Equations as Equations
 from .ensembles import (
     Ensemble as Ensemble,
-)
-from .ensembles import (
-    Report as Report,
 )
 from .ensembles import (
     Vary as Vary,
@@ -68,6 +68,9 @@ from .flight import (
 )
 from .flight import (
     Release as Release,
+)
+from .flight import (
+    Report as Report,
 )
 from .flight import (
     Stop as Stop,

@@ -44,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--out", type=Path, metavar="MAP.zarr",
         help="write the dataset: a Zarr store, resumed if it is there, or .nc (NetCDF)",
     )  # fmt: skip
-    parser.add_argument("--threads", type=int, metavar="N", help="threads (default: one a core)")
+    parser.add_argument("--threads", type=int, metavar="N", help="threads (default: one per core)")
     parser.add_argument(
         "--workers", type=int, metavar="N", help="processes of dask.distributed on this machine"
     )
@@ -60,8 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> None:
     """Fly what is left to fly, and print what it all adds up to."""
-    from somersault.ensembles._ensemble import carried_out
-    from somersault.ensembles._summary import summary
+    from somersault.ensembles import carried_out, summary
     from somersault.spec import read_ensemble
 
     if chosen.plot is not None:
@@ -71,7 +70,7 @@ def run(chosen: argparse.Namespace) -> None:
         spec.plan, chosen.out, chosen.chunk, chosen.threads, chosen.workers, chosen.scheduler,
         progress=sys.stderr.isatty(),
     )  # fmt: skip
-    record = {"model": spec.plan.model.name, "dimensions": spec.plan.dims}
+    record = {"model": spec.plan.simulation.name, "dimensions": spec.plan.dims}
     record |= summary(found.dataset, spec.tolerance)
     drawn = [n for n, v in spec.plan.vary.items() if v.distribution is not None]
     if chosen.plot is not None:
@@ -80,9 +79,9 @@ def run(chosen: argparse.Namespace) -> None:
     if chosen.out is not None:
         record["dataset"] = str(chosen.out)
     points = spec.plan.count // spec.plan.dims.get("sample", 1)
-    few = points * len(spec.plan.report.quantities) <= _MOST_RANKINGS
+    few = points * len(spec.quantities) <= _MOST_RANKINGS
     if len(drawn) > 1 and 64 <= spec.plan.size <= _MOST_RANKED and few:
-        record |= _ranking(found.dataset, spec.plan.report.quantities)
+        record |= _ranking(found.dataset, spec.quantities)
     print(json.dumps(record) if chosen.json else "\n".join(_page(record)))
 
 
@@ -93,11 +92,11 @@ _MOST_RANKINGS = 24  # one of each thing reported, at every point of the grids
 def _ranking(data: Any, names: tuple[str, ...]) -> dict[str, Any]:
     """Sobol' indices of what is reported, averaged over the grids, and from how many samples;
     None where they are not determined: too few flights that did not fail, or no variance."""
-    from somersault.ensembles._sensitivity import quick
+    from somersault.ensembles import quick_sensitivity
 
-    found, used = quick(data, names)
+    ranked, used = quick_sensitivity(data, names)
     result = {}
-    for name, indices in found.items():
+    for name, indices in ranked.items():
         which = "total" if "total" in indices else "first_order"
         values = indices[which]
         mean = values.mean([d for d in values.dims if d != "input"])

@@ -1,25 +1,30 @@
-"""Many flights: what varies, what is told, where it is kept, what it adds up to."""
+"""Many runs of anything that can be run with different numbers: what varies, where they are kept,
+what they add up to."""
 
-from somersault.ensembles._ensemble import Ensemble, ensemble
-from somersault.ensembles._landings import landing_derivatives, landing_map, landing_target
-from somersault.ensembles._report import ENDINGS, Report, landing_error
-from somersault.ensembles._sensitivity import sensitivity
-from somersault.ensembles._summary import failed, fraction, quantiles, within
-from somersault.ensembles._vary import Vary
+from somersault.ensembles._endings import ended_by, failed
+from somersault.ensembles._ensemble import Ensemble, carried_out, ensemble
+from somersault.ensembles._landings import landing_derivatives, landing_map
+from somersault.ensembles._plan import Plan, plan
+from somersault.ensembles._sensitivity import quick_sensitivity, sensitivity
+from somersault.ensembles._summary import fraction, quantiles, summary, within
+from somersault.ensembles._vary import DISTRIBUTIONS, Vary
 
 __all__ = [
-    "ENDINGS",
+    "DISTRIBUTIONS",
     "Ensemble",
-    "Report",
+    "Plan",
     "Vary",
+    "carried_out",
+    "ended_by",
     "ensemble",
     "failed",
     "fraction",
     "landing_derivatives",
-    "landing_error",
     "landing_map",
-    "landing_target",
+    "plan",
     "quantiles",
+    "quick_sensitivity",
     "sensitivity",
+    "summary",
     "within",
 ]

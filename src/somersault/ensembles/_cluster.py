@@ -1,8 +1,8 @@
 """The chunks of an ensemble on the workers of dask.distributed.
 
-A task is (plan, chunk). A worker that sees the store writes the chunk itself; one that does not
-sends its rows to the program, which writes them. Chunks of a worker that dies are given to
-others; what the program had finished stays finished if it, or the scheduler, dies.
+A task is a plan and the number of a chunk. A worker that sees the store writes the chunk itself;
+one that does not sends its rows to the program, which writes them. Chunks of a worker that dies are
+given to others; what the program had finished stays finished if it, or the scheduler, dies.
 """
 
 from __future__ import annotations
@@ -26,8 +26,9 @@ from somersault._core.array import Array
 from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault.engine import cores, processor
 from somersault.ensembles import _run, _store
-from somersault.ensembles._plan import Plan, engines
-from somersault.ensembles._store import Layout
+from somersault.ensembles._chunks import Chunks
+from somersault.ensembles._plan import Plan
+from somersault.ensembles._versions import versions
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -41,10 +42,10 @@ _DEATHS = 20  # of workers in one chunk, after which it is the chunk's fault
 
 
 def on_cluster(
-    plan: Plan, cut: Layout, chunks: list[int], put: _run.Put, told: _run.Told,
+    plan: Plan, chunks: Chunks, left: list[int], put: _run.Put, advance: _run.Advance,
     file: Path | None, threads: int | None, workers: int | None, scheduler: str | None,
 ) -> None:  # fmt: skip
-    """Fly chunks on processes of this machine, or on those of a scheduler."""
+    """Run the chunks that are `left` on processes of this machine, or on those of a scheduler."""
     import dask
     from distributed import Client, LocalCluster
 
@@ -57,7 +58,7 @@ def on_cluster(
     with dask.config.set(quiet), _unlogged():
         if scheduler is not None:
             with _client(scheduler) as client:
-                _carry(client, plan, cut, chunks, put, told, file, threads, scheduler)
+                _carry(client, plan, chunks, left, put, advance, file, threads, scheduler)
             return
         assert workers is not None
         each = threads or max(1, cores() // workers)
@@ -67,7 +68,7 @@ def on_cluster(
                 host="127.0.0.1", silence_logs="CRITICAL",
             )  # fmt: skip
         with cluster, Client(cluster) as client:
-            _carry(client, plan, cut, chunks, put, told, file, each, "this machine")
+            _carry(client, plan, chunks, left, put, advance, file, each, "this machine")
 
 
 @contextmanager
@@ -85,7 +86,7 @@ def _uninterrupted() -> Iterator[None]:
 
 @contextmanager
 def _unlogged() -> Iterator[None]:
-    """What goes wrong is told in one sentence, and not in dask's log beside it."""
+    """What goes wrong is said in one sentence, and not in dask's log as well."""
     logs = [logging.getLogger(name) for name in ("distributed", "distributed.client")]
     levels = [log.level for log in logs]
     for log in logs:
@@ -129,23 +130,23 @@ def _listens(address: str) -> None:
 
 
 def _carry(
-    client: Client, plan: Plan, cut: Layout, chunks: list[int], put: _run.Put, told: _run.Told,
-    file: Path | None, threads: int | None, where: str,
+    client: Client, plan: Plan, chunks: Chunks, left: list[int], put: _run.Put,
+    advance: _run.Advance, file: Path | None, threads: int | None, where: str,
 ) -> None:  # fmt: skip
     from distributed.scheduler import KilledWorker
 
     try:
         client.wait_for_workers(1, timeout=_WAIT_FOR_WORKERS)
-        _check_engines(client, plan.engines)
+        _check_versions(client, plan.versions)
         _note_processors(client)
         shared = client.scatter(plan, broadcast=False, hash=False)
         path = None if file is None else str(file.resolve())
-        for k in _flown(client, shared, cut, chunks, put, path, threads, plan.engines):
-            told(cut.size(k))
+        for k in _as_done(client, shared, chunks, left, put, path, threads, plan.versions):
+            advance(chunks.size(k))
         if file is not None:  # a worker may have written into a copy of the store at its path
-            done = _store.finished(file, plan, cut)
-            lost = [k for k in chunks if k not in done]
-            for _ in _flown(client, shared, cut, lost, put, None, threads, plan.engines):
+            done = _store.finished(file, plan, chunks)
+            lost = [k for k in left if k not in done]
+            for _ in _as_done(client, shared, chunks, lost, put, None, threads, plan.versions):
                 pass
     except KilledWorker:
         raise SomersaultError(
@@ -163,20 +164,20 @@ def _carry(
         ) from None
 
 
-def _flown(
-    client: Client, shared: Any, cut: Layout, chunks: list[int], put: _run.Put,
+def _as_done(
+    client: Client, shared: Any, chunks: Chunks, left: list[int], put: _run.Put,
     path: str | None, threads: int | None, wanted: dict[str, str],
 ) -> Iterator[int]:  # fmt: skip
     """Chunks as they are finished on the workers, no more of them ahead than keeps them busy."""
     from distributed import as_completed
 
-    ahead = iter(chunks)
+    ahead = iter(left)
 
     def begin(busy: int) -> list[Any]:
         """As many more as there are workers now: some may have joined, or gone."""
         most = _AHEAD * len(client.scheduler_info(n_workers=-1)["workers"])
         return [
-            client.submit(_chunk, shared, cut, k, path, threads, wanted, pure=False)
+            client.submit(_chunk, shared, chunks, k, path, threads, wanted, pure=False)
             for k in islice(ahead, max(most - busy, 0 if busy else 1))
         ]
 
@@ -191,9 +192,9 @@ def _flown(
         yield k
 
 
-def _check_engines(client: Client, ours: dict[str, str]) -> None:
+def _check_versions(client: Client, ours: dict[str, str]) -> None:
     """Refuse workers that would compute other last digits."""
-    for address, theirs in client.run(engines).items():
+    for address, theirs in client.run(versions, tuple(ours)).items():
         _compare(f"the worker {address}", theirs, ours)
 
 
@@ -203,7 +204,7 @@ def _note_processors(client: Client) -> None:
     if others:
         warnings.warn(
             f"there are workers on {', '.join(others)}, and this program is on {processor()}: the "
-            "last digits of a flight depend on who flies it; take workers of one kind if they "
+            "last digits depend on who computes them; take workers of one kind if they "
             "matter",
             SomersaultWarning,
             stacklevel=2,
@@ -220,15 +221,15 @@ def _compare(who: str, theirs: dict[str, str], ours: dict[str, str]) -> None:
 
 
 def _chunk(
-    plan: Plan, cut: Layout, k: int, path: str | None, threads: int | None,
+    plan: Plan, chunks: Chunks, k: int, path: str | None, threads: int | None,
     wanted: dict[str, str],
 ) -> tuple[int, Mapping[str, Array] | None]:  # fmt: skip
-    """Fly chunk k on a worker; its rows, unless it could write them itself."""
-    _compare("a worker that joined later", engines(), wanted)
-    rows = _run.flown(plan, cut, k, threads or cores())
+    """Run chunk k on a worker; its rows, unless it could write them itself."""
+    _compare("a worker that joined later", versions(tuple(wanted)), wanted)
+    rows = _run.rows_of(plan, chunks, k, threads or cores())
     if path is None or not _is_here(path, plan):
         return k, rows
-    _store.write(Path(path), plan, cut, k, rows)
+    _store.write(Path(path), plan, chunks, k, rows)
     return k, None
 
 
@@ -241,8 +242,8 @@ def _is_here(path: str, plan: Plan) -> bool:
 
 
 @lru_cache(maxsize=4)
-def _is_stored(path: str, made: int, plan: Plan) -> bool:
-    """Whether the store that was `made` (ns) at a path is a plan's: read once for all chunks."""
+def _is_stored(path: str, created: int, plan: Plan) -> bool:
+    """Whether the store `created` (ns) at a path is a plan's: read once for all chunks."""
     try:
         _store.resume(Path(path), plan)
     except SomersaultError:

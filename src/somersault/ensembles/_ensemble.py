@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from somersault._core.checks import by_name, instance, name_list, text, truth, whole_number
+from somersault._core.checks import name_list, text, truth, whole_number
 from somersault._core.datasets import netcdf
-from somersault._core.errors import SomersaultError
+from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault._core.files import write as write_file
 from somersault.ensembles import _run, _store
-from somersault.ensembles._plan import MOST_FLIGHTS, MOST_SEED, Plan, check
-from somersault.ensembles._report import Report
-from somersault.ensembles._targets import unit
+from somersault.ensembles._chunks import Chunks, chunked
+from somersault.ensembles._memory import empty_dataset, run_bytes
+from somersault.ensembles._plan import Plan, plan
 from somersault.ensembles._vary import Vary
-from somersault.flight._maneuver import (
-    STEPS,
-    Event,
-    check_limits_of_flight,
-    flight_time,
-)
-from somersault.flight._takeoff import Takeoff, require_takeoff
-from somersault.model import Model, load
+from somersault.flight import Flight, Maneuver, Report, Takeoff, flights
+from somersault.model import Model
+from somersault.simulation import ENDED, LANDING_ERROR, Simulation
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,29 +35,89 @@ _MEMORY_BYTES = 2**31  # that a dataset without a store may take
 
 @dataclass(frozen=True, eq=False)
 class Ensemble:
-    """Flights that differ in what was varied: `dataset` over the varied quantities."""
+    """Flights that differ in what was varied: `dataset` over the varied quantities.
+
+    Made by `ensemble`, or by `Ensemble.open` from a file.
+    """
 
     dataset: xr.Dataset
 
     @staticmethod
     def open(path: str | Path) -> Ensemble:
-        """An ensemble that was written before, whole or in part: a Zarr store, whose values are
-        read when used, or NetCDF."""
+        """An ensemble that was written before, whole or in part.
+
+        Parameters
+        ----------
+        path
+            A Zarr store, whose values are read when they are used, or a NetCDF file.
+
+        Raises
+        ------
+        SomersaultError
+            Where there is none.
+        """
         file = _path("path", path)
         if not file.exists():
             raise SomersaultError(f"there is no ensemble {str(path)!r}; check the path")
         return Ensemble(_store.opened(file))
 
     def fraction(
-        self, good: Any = None, tolerance: float | None = None, **options: Any
+        self,
+        good: Any = None,
+        tolerance: float | None = None,
+        *,
+        ended: str | None = None,
+        over: str | Sequence[str] = "sample",
+        confidence: float = 0.95,
     ) -> xr.Dataset:
-        """The share of flights that came out right, with its confidence interval: see
-        `ensembles.fraction`. `good` is a true-or-false array over the flights; without it those
-        whose landing_error is at most `tolerance`."""
-        from somersault.ensembles._summary import fraction, within
+        """The share of flights that came out right, with its confidence interval.
 
+        One of `good`, `tolerance` and `ended` says which those are.
+
+        Parameters
+        ----------
+        good
+            True or false for each flight, like `found.dataset.tilt < 0.1`. One that failed was not
+            good.
+        tolerance
+            The flights whose landing error is at most so much, rad.
+        ended
+            The flights that ended so: "duration", "event", "too many steps" …
+        over, confidence
+            As for `ensembles.fraction`.
+
+        Returns
+        -------
+        xarray.Dataset
+            `fraction`, `low`, `high`, and `flights`, how many counted.
+
+        Raises
+        ------
+        SomersaultError
+            For what does not fit.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> vary = {"tilt": so.Vary(adds_to="takeoff.tilt", normal=[0.0, 0.05])}
+        >>> found = so.ensemble("furrer", so.Takeoff(spin=8.64), 1.0, vary, size=20)
+        >>> float(found.fraction(ended="duration")["fraction"])
+        1.0
+        """
+        from somersault.ensembles._endings import ended_by, run_already
+        from somersault.ensembles._summary import fraction, share, within
+
+        given = sum(x is not None for x in (good, tolerance, ended))
+        if given != 1:
+            raise SomersaultError(
+                f"fraction is given {given} of good, tolerance and ended; give one of them, to say "
+                "which flights came out right"
+            )
+        codes = self.dataset[ENDED]
+        if ended is not None:
+            return share(ended_by(codes, ended), run_already(codes), over, confidence)
         chosen = within(self.dataset, tolerance) if good is None else good
-        return fraction(chosen, self.dataset["ended"], **options)
+        return fraction(chosen, codes, over, confidence)
 
     def quantiles(
         self, name: str, q: Sequence[float] = (0.05, 0.5, 0.95), **options: Any
@@ -73,7 +129,7 @@ class Ensemble:
         return quantiles(self.dataset, name, q, **options)
 
     def sensitivity(self, name: str, **options: Any) -> xr.Dataset:
-        """How much of the variance of a reported quantity each drawn one makes, in order: see
+        """How much of the variance of a reported quantity comes from each drawn one: see
         `ensembles.sensitivity`."""
         from somersault.ensembles._sensitivity import sensitivity
 
@@ -88,18 +144,19 @@ class Ensemble:
 
 
 def ensemble(
-    model: str | Model,
+    model: str | Model | Maneuver | Simulation,
     takeoff: Takeoff | None = None,
-    duration: float = 1.0,
+    duration: float | None = None,
     vary: Mapping[str, Vary] | None = None,
     *,
+    against: Flight | Mapping[str, float] | None = None,
     size: int | None = None,
     seed: int = 0,
     sequence: str = "random",
-    report: Report | Sequence[str] = Report.quantities,
-    accuracy: float = 1e-7,
-    until: Event | None = None,
-    steps: int = STEPS,
+    report: Report | Sequence[str] | None = None,
+    accuracy: float | None = None,
+    until: str | None = None,
+    steps: int | None = None,
     out: str | Path | None = None,
     chunk: int | None = None,
     threads: int | None = None,
@@ -107,53 +164,130 @@ def ensemble(
     scheduler: str | None = None,
     progress: bool = False,
 ) -> Ensemble:
-    """Many flights of a maneuver, differing in what is varied.
+    """Many flights of one maneuver, differing in what is varied.
 
-    `vary` names the varied quantities (`Vary`). Grids span dimensions of their own; everything
-    drawn runs along `sample`, `size` of them, from the `seed`, as a "random", "sobol", "halton"
-    or "saltelli" `sequence`. `report` is a `Report`, or the names of its quantities. `accuracy` and
-    `until` are those of `fly`; a flight that takes `steps` steps of the integration and is not done
-    has failed, and is marked.
+    The numbers are the same, bit for bit, for any chunks, threads and workers, and where the same
+    call goes on with a store after it was stopped.
 
-    Without `out` the result stays in memory. A path that ends in .nc gets it as NetCDF in the
-    end; any other is a Zarr store, which fills chunk by chunk (`chunk` flights each), and which
-    the same call, stopped however, goes on with. Chunks are flown on `threads` (one a core), or
-    on `workers` processes of dask.distributed, or by those of the `scheduler` at an address; the
-    numbers are the same, bit for bit. Raises SomersaultError for what does not fit, and for a
-    store of another specification.
+    Parameters
+    ----------
+    model
+        A model, whose `takeoff` and `duration` (s; 1 by default) are given as for
+        `somersault.fly`; a maneuver, which has its own; or anything else that can be run many
+        times, a `somersault.simulation.Simulation`.
+    vary
+        What differs, by name. Grids span dimensions of their own; all that is drawn or listed runs
+        along the dimension `sample`.
+    against
+        The flight, or angles by name (rad), that landings are measured against: "landing_error" is
+        then reported.
+    size, seed, sequence
+        How many samples are drawn, from which seed, as a "random", "sobol", "halton" or "saltelli"
+        sequence.
+    report
+        A `Report`, or the names of its quantities.
+    accuracy, until, steps
+        As for `somersault.fly`; by default those of the maneuver if it has any, else 1e-7 rad, no
+        event, and 100,000 steps, after which a flight that is not done has failed.
+    out
+        A path that ends in .nc gets the dataset as NetCDF in the end. Any other is a Zarr store,
+        which fills chunk by chunk, and with which the same call goes on. Without it the dataset
+        stays in memory.
+    chunk
+        Flights in a chunk of the store.
+    threads, workers, scheduler
+        Chunks are run on so many threads (one for each core by default), on so many processes of
+        dask.distributed, or by the workers of the dask scheduler at an address.
+    progress
+        Whether a bar shows how far it is.
+
+    Returns
+    -------
+    Ensemble
+
+    Raises
+    ------
+    SomersaultError
+        For what does not fit, and for a store of another specification.
+
+    Warns
+    -----
+    SomersaultWarning
+        Where flights failed although they could take off, with how many and why.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> vary = {"leant": so.Vary(adds_to="takeoff.tilt", normal=[0.0, 0.02])}
+    >>> takeoff = so.Takeoff(spin=8.64)
+    >>> found = so.ensemble("furrer", takeoff, 1.0, vary, size=50, report=["twist"])
+    >>> found.dataset["twist"].sizes["sample"]
+    50
     """
-    planned = plan(
-        model, takeoff, duration, vary, size, seed, sequence, report, accuracy, until, steps
-    )
-    return carried_out(planned, out, chunk, threads, workers, scheduler, progress)
+    simulation = _simulation(
+        model, report,
+        {"takeoff": takeoff, "duration": duration},
+        {"against": against, "accuracy": accuracy, "until": until, "steps": steps},
+    )  # fmt: skip
+    planned = plan(simulation, vary, size, seed, sequence)
+    found = carried_out(planned, out, chunk, threads, workers, scheduler, progress)
+    _warn_of_failures(planned, found)
+    return found
 
 
-def plan(
-    model: str | Model, takeoff: Takeoff | None, duration: float,
-    vary: Mapping[str, Vary] | None, size: int | None, seed: int, sequence: str,
-    report: Report | Sequence[str], accuracy: float, until: str | None, steps: int,
-) -> Plan:  # fmt: skip
-    """What `ensemble` would fly; SomersaultError for what does not fit."""
-    duration = flight_time(duration)
-    check_limits_of_flight(accuracy, until, steps)
-    takeoff = Takeoff() if takeoff is None else takeoff
-    require_takeoff(takeoff)
+def _simulation(
+    of: Any, report: Any, takeoff: Mapping[str, Any], options: Mapping[str, Any]
+) -> Simulation:
+    """What is run; `takeoff` and `options` are arguments of `ensemble`, None for those left out."""
+    given = {name: x for name, x in takeoff.items() if x is not None}
+    chosen = {name: x for name, x in options.items() if x is not None}
+    if report is not None:
+        chosen["report"] = _with_error(report, "against" in chosen)
+    elif "against" in chosen:
+        chosen["report"] = _with_error(Report(), True)
+    if isinstance(of, Maneuver):
+        _refuse(given, "a maneuver has its own")
+        own = {name: getattr(of, name, None) for name in ("accuracy", "until", "steps")}
+        chosen = {name: x for name, x in own.items() if x is not None} | chosen
+        return flights(of.model, of.takeoff, of.duration, **chosen)
+    if isinstance(of, str | Model) or not isinstance(of, Simulation):
+        return flights(of, **given, **chosen)
+    _refuse({**given, **chosen}, "a simulation has its own")
+    return of
+
+
+def _with_error(report: Any, measured: bool) -> Any:
+    """A report with the landing error in it where that is measured."""
     if not isinstance(report, Report):
         report = Report(name_list("report, unless it is a Report,", report))
-    varied = {n: instance(f"vary.{n}", v, Vary) for n, v in by_name("vary", vary).items()}
-    seed = whole_number("sample.seed", seed, 0, MOST_SEED)
-    if size is not None:
-        size = whole_number("sample.size", size, 1, MOST_FLIGHTS)
-    if size is None:
-        listed = [len(v.samples) for v in varied.values() if v.samples is not None]
-        size = listed[0] if listed else 1
-    made = Plan(
-        load(model), takeoff, duration, varied, report, size, seed, sequence,
-        float(accuracy), until, int(steps),
-    )  # fmt: skip
-    check(made)
-    units = {name: unit(made.model, v, made.targets[name]) for name, v in varied.items()}
-    return replace(made, vary={n: replace(v, unit=units[n]) for n, v in varied.items()})
+    if not measured or LANDING_ERROR in report.quantities:
+        return report
+    return replace(report, quantities=(*report.quantities, LANDING_ERROR))
+
+
+def _refuse(given: Mapping[str, Any], why: str) -> None:
+    for name in given:
+        raise SomersaultError(f"{name} is given, but {why}; leave it out")
+
+
+def _warn_of_failures(planned: Plan, found: Ensemble) -> None:
+    """Warn of runs that failed although they could begin."""
+    from somersault.ensembles._summary import endings
+
+    known = planned.simulation.endings
+    lost = {
+        word: count
+        for word, count in endings(found.dataset).items()
+        if word in known.failed and word != known.unsound
+    }
+    if lost:
+        reasons = ", ".join(f"{word}: {count:,}" for word, count in lost.items())
+        warnings.warn(
+            f"{sum(lost.values()):,} of {planned.count:,} flights broke off ({reasons}); what they "
+            "report is NaN, and counts as failed",
+            SomersaultWarning,
+            stacklevel=3,
+        )
 
 
 def carried_out(
@@ -161,7 +295,20 @@ def carried_out(
     threads: int | None = None, workers: int | None = None, scheduler: str | None = None,
     progress: bool = False,
 ) -> Ensemble:  # fmt: skip
-    """Fly a plan, or what is left of it."""
+    """The ensemble of a plan; with a store, what is left of it is run.
+
+    Parameters
+    ----------
+    plan
+        Made by `ensembles.plan`.
+    out, chunk, threads, workers, scheduler, progress
+        As for `ensemble`.
+
+    Raises
+    ------
+    SomersaultError
+        For what does not fit, and for a store of another specification.
+    """
     for what, value in (("chunk", chunk), ("threads", threads), ("workers", workers)):
         if value is not None:
             whole_number(what, value, 1, _MOST)
@@ -171,27 +318,27 @@ def carried_out(
     file = None if out is None else _path("out", out)
     if workers is not None and scheduler is not None:
         raise SomersaultError("workers and scheduler are both given; give one of them")
-    cut = _store.layout(plan.dims, chunk or _chunk(plan))
+    chunks = chunked(plan.dims, chunk or chunk_size(plan))
     if file is None or file.suffix.lower() == ".nc":
-        return _in_memory(plan, cut, file, threads, workers, scheduler, progress)
+        return _in_memory(plan, chunks, file, threads, workers, scheduler, progress)
     if file.exists():
-        cut = _store.resume(file, plan)
+        chunks = _store.resume(file, plan)
     else:
         if scheduler is not None:  # before anything is written
             from somersault.ensembles._cluster import check_scheduler
 
             check_scheduler(scheduler)
-        _store.create(file, plan, cut)
-        cut = _store.resume(file, plan)  # which another program may have made meanwhile
-    done = _store.finished(file, plan, cut)
-    left = [k for k in range(len(cut)) if k not in done]
+        _store.create(file, plan, chunks)
+        chunks = _store.resume(file, plan)  # which another program may have made meanwhile
+    done = _store.finished(file, plan, chunks)
+    left = [k for k in range(len(chunks)) if k not in done]
     if left:
         _store.note_processor(file)
 
     def put(k: int, rows: Mapping[str, Any]) -> None:
-        _store.write(file, plan, cut, k, rows)
+        _store.write(file, plan, chunks, k, rows)
 
-    _fly(plan, cut, left, put, file, threads, workers, scheduler, progress)
+    _run_chunks(plan, chunks, left, put, file, threads, workers, scheduler, progress)
     _store.tidy(file)
     return Ensemble(_store.opened(file))
 
@@ -204,42 +351,37 @@ def _path(what: str, given: str | Path) -> Path:
     return Path(given)
 
 
-def _fly(
-    plan: Plan, cut: _store.Layout, left: list[int], put: _run.Put, file: Path | None,
+def _run_chunks(
+    plan: Plan, chunks: Chunks, left: list[int], put: _run.Put, file: Path | None,
     threads: int | None, workers: int | None, scheduler: str | None, shown: bool,
 ) -> None:  # fmt: skip
-    remaining = sum(map(cut.size, left))
-    with _run.progress(plan.count, plan.count - remaining, shown) as told:
+    remaining = sum(map(chunks.size, left))
+    with _run.progress_bar(plan.count, plan.count - remaining, shown) as advance:
         if left and (workers is not None or scheduler is not None):
             from somersault.ensembles._cluster import on_cluster
 
-            on_cluster(plan, cut, left, put, told, file, threads, workers, scheduler)
+            on_cluster(plan, chunks, left, put, advance, file, threads, workers, scheduler)
         else:
-            _run.on_threads(plan, cut, left, put, told, threads)
+            _run.on_threads(plan, chunks, left, put, advance, threads)
 
 
 def _in_memory(
-    plan: Plan, cut: _store.Layout, file: Path | None, threads: int | None,
+    plan: Plan, chunks: Chunks, file: Path | None, threads: int | None,
     workers: int | None, scheduler: str | None, shown: bool,
 ) -> Ensemble:  # fmt: skip
-    if plan.count * _bytes_told(plan) > _MEMORY_BYTES:
+    if plan.count * run_bytes(plan) > _MEMORY_BYTES:
         raise SomersaultError(
             f"{plan.count:,} flights would fill the memory; give --out a Zarr store, MAP.zarr"
         )
-    data, put = _store.gathered(plan, cut)
-    _fly(plan, cut, list(range(len(cut))), put, None, threads, workers, scheduler, shown)
+    data, put = empty_dataset(plan, chunks)
+    every = list(range(len(chunks)))
+    _run_chunks(plan, chunks, every, put, None, threads, workers, scheduler, shown)
     if file is not None:
         write_file(file, netcdf(data))
     return Ensemble(data)
 
 
-def _bytes_told(plan: Plan) -> int:
-    kept = plan.report
-    samples = kept.samples if kept.history else 0
-    return 8 * (4 + len(kept.quantities) + 2 * len(kept.extremes) + samples * len(kept.history))
-
-
-def _chunk(plan: Plan) -> int:
+def chunk_size(plan: Plan) -> int:
     """Flights in a chunk: about a second of work, some megabytes."""
-    fitting = max(_CHUNK_BYTES // _bytes_told(plan), 64)
+    fitting = max(_CHUNK_BYTES // run_bytes(plan), 64)
     return min(fitting, _CHUNK, max(_LEAST_CHUNK, -(-plan.count // _PARTS)))

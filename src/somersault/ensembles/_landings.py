@@ -10,7 +10,6 @@ from somersault._core.checks import name_list
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 from somersault.ensembles._ensemble import Ensemble, ensemble
-from somersault.ensembles._report import Report
 from somersault.ensembles._vary import Vary
 from somersault.flight import Flight, Takeoff
 from somersault.model import Model
@@ -19,30 +18,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _STEPS = 100_000  # of a flight's integration
-
-
-def landing_target(flight: Flight) -> dict[str, float]:
-    """The attitude and the joint coordinates that a flight lands with, as a `Report` wants them.
-
-    Parameters
-    ----------
-    flight : Flight
-
-    Returns
-    -------
-    dict
-        "somersault", "tilt" and "twist" (rad, unwrapped) and every joint coordinate by name.
-
-    Examples
-    --------
-    >>> import somersault as so
-    >>> from somersault.ensembles import landing_target
-    >>> target = landing_target(so.arm_tilt().fly())
-    >>> round(target["left_elbow"], 6), len(target)
-    (0.0, 16)
-    """
-    end = flight.landing
-    return {"somersault": end.somersault, "tilt": end.tilt, "twist": end.twist, **end.joints}
 
 
 def landing_map(
@@ -108,7 +83,8 @@ def landing_map(
             "takeoff_tilt": Vary("takeoff.tilt", values=grid, unit="rad"),
             "takeoff_twist": Vary("takeoff.twist", values=grid, unit="rad"),
         },
-        report=Report(("landing_error",), target=landing_target(against)),
+        report=["landing_error"],
+        against=against,
         accuracy=accuracy,
         steps=steps,
     )
@@ -173,7 +149,7 @@ def landing_derivatives(
         takeoff,
         duration,
         {f"change_{k}": Vary(adds_to=name, samples=steps_of[k]) for k, name in enumerate(changed)},
-        report=Report(wanted),
+        report=wanted,
         accuracy=accuracy,
         steps=steps,
     ).dataset

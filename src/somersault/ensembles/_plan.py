@@ -1,4 +1,4 @@
-"""A whole ensemble as a value: what is flown, what varies, what is told."""
+"""A whole ensemble as a value: what is run, and what varies."""
 
 from __future__ import annotations
 
@@ -7,309 +7,268 @@ import json
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
-from functools import cache, cached_property
-from importlib.metadata import PackageNotFoundError, version
+from dataclasses import asdict, dataclass, fields, replace
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.checks import by_name, instance, whole_number
 from somersault._core.errors import SomersaultError
-from somersault.ensembles import _report, _vary
-from somersault.ensembles._report import Report
-from somersault.ensembles._targets import Target, body_names, check_apart, moved, targets
+from somersault._core.plain import plain
+from somersault.ensembles import _vary
+from somersault.ensembles._moved import check_apart, moved, moved_by, unit
 from somersault.ensembles._vary import Vary
-from somersault.flight._batch import Batch
-from somersault.flight._system import System
-from somersault.flight._takeoff import Takeoff
-from somersault.flight._values import Name
-from somersault.model import Model, model_digest
+from somersault.ensembles._versions import versions
+from somersault.simulation import ENDED, Name, Simulation, Target, Variable
 
 SAMPLE = "sample"
-MOST_FLIGHTS = 10**11
-MOST_SEED = 2**63 - 1
+OVER_TIME = "history_time"
+MOST_RUNS = 10**11
+_MOST_SEED = 2**63 - 1
 _MOST_LISTED = 1_000
-_TOGETHER = 16_384  # flights whose numbers are held at once,
-_TOGETHER_BYTES = 2**26  # or as many as these hold
 _NAME = re.compile(r"\w[\w-]*")  # of an array in a store, and of a word in its attributes
-_ENGINES = ("somersault", "casadi", "llvmlite", "numpy", "scipy")
 
 
 @dataclass(frozen=True, eq=False)
 class Plan:
     """Everything that decides the numbers of an ensemble, and nothing else.
 
-    Flights are numbered along the dimensions in `dims`, the last running fastest.
+    Made by `plan`. Runs are numbered along the dimensions in `dims`, the last running fastest.
     """
 
-    model: Model
-    takeoff: Takeoff
-    duration: float
+    simulation: Simulation
     vary: Mapping[str, Vary]
-    report: Report
+    targets: Mapping[str, tuple[Target, ...]]
+    """The numbers that each varied quantity moves."""
     size: int
     seed: int
     sequence: str
-    accuracy: float
-    until: str | None
-    steps: int
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: getattr(self, name) for name in self.__dataclass_fields__}
-
-    @cached_property
-    def _nominal(self) -> Mapping[Name, float | Array]:
-        return Batch(self.model, self.takeoff, self.duration).values
-
-    @cached_property
-    def targets(self) -> dict[str, tuple[Target, ...]]:
-        """The numbers that each varied quantity moves."""
-        return {
-            name: targets(self.model, self._nominal, f"vary.{name}", vary)
-            for name, vary in self.vary.items()
-        }
-
-    @cached_property
-    def bodies(self) -> tuple[str, ...]:
-        """Numbers of the bodies that are varied."""
-        return body_names(self.targets)
-
-    @cached_property
-    def batch(self) -> Batch:
-        """The flights, which share their equations."""
-        return Batch(
-            self.model, self.takeoff, self.duration, self.until, self.bodies,
-            tuple(self.report.extremes),
-        )  # fmt: skip
-
-    @property
-    def system(self) -> System:
-        """Their equations."""
-        return self.batch.system
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @property
     def dims(self) -> dict[str, int]:
         """Dimensions and their lengths."""
-        found = {name: len(v.grid) for name, v in self.vary.items() if v.grid is not None}
-        if len(found) < len(self.vary) or self.size > 1 or not found:
-            found[SAMPLE] = self.size
-        return found
+        lengths = {name: len(v.grid) for name, v in self.vary.items() if v.grid is not None}
+        if len(lengths) < len(self.vary) or self.size > 1 or not lengths:
+            lengths[SAMPLE] = self.size
+        return lengths
 
     @property
     def count(self) -> int:
-        """How many flights."""
+        """How many runs."""
         return math.prod(self.dims.values())
 
-    @property
-    def values(self) -> Mapping[Name, float | Array]:
-        """The numbers of the takeoff before anything is varied."""
-        return self.batch.values
+    @cached_property
+    def variables(self) -> dict[str, Variable]:
+        """All variables, in order; `ENDED` last: a chunk that has it is complete."""
+        ended = Variable("1", "u1", words="how the flight ended")
+        return {**self.simulation.variables, ENDED: ended}
 
-    def coordinate(self, name: str, places: Array) -> Array:
-        """Values of a varied quantity at places along its dimension."""
-        grid = self.vary[name].grid
-        if grid is not None:
-            return grid[places]
-        return self.drawn(places)[name]
+    @property
+    def along_samples(self) -> list[str]:
+        """The varied quantities that run along `sample`: drawn, or listed one by one."""
+        return [name for name, vary in self.vary.items() if vary.grid is None]
 
     def drawn(self, places: Array) -> dict[str, Array]:
         """Values of what runs along `sample`, at rising places."""
-        along = {n: v for n, v in self.vary.items() if v.grid is None}
+        along = {name: self.vary[name] for name in self.along_samples}
         return _vary.draws(along, self.sequence, self.seed, places)
 
     def varied(self, first: int, last: int) -> dict[str, Array]:
-        """Every varied quantity of flights first … last − 1."""
+        """Every varied quantity of runs first … last − 1."""
         dims = self.dims
         at = dict(
             zip(dims, np.unravel_index(np.arange(first, last), tuple(dims.values())), strict=True)
         )
-        found = {n: v.grid[at[n]] for n, v in self.vary.items() if v.grid is not None}
-        if len(found) < len(self.vary):
+        given = {n: v.grid[at[n]] for n, v in self.vary.items() if v.grid is not None}
+        if len(given) < len(self.vary):
             least, most = int(at[SAMPLE].min()), int(at[SAMPLE].max())
             drawn = self.drawn(np.arange(least, most + 1))
-            found |= {name: x[at[SAMPLE] - least] for name, x in drawn.items()}
-        return found
+            given |= {name: x[at[SAMPLE] - least] for name, x in drawn.items()}
+        return given
 
-    def fly(self, first: int, last: int) -> dict[str, Array]:
-        """The variables of flights first … last − 1.
+    def run(self, first: int, last: int) -> dict[str, Array]:
+        """The variables of runs first … last − 1.
 
-        Each flight's numbers depend on nothing but its own place.
+        The numbers of each depend on nothing but its own place.
         """
         given = self.varied(first, last)
-        edges = [*range(0, last - first, self._together), last - first]
-        with np.errstate(over="ignore", invalid="ignore"):  # such a flight ends "not finite"
+        edges = [*range(0, last - first, self.simulation.together), last - first]
+        with np.errstate(over="ignore", invalid="ignore"):  # such a run ends as it may
             parts = [
-                self._fly({name: x[a:b] for name, x in given.items()}, b - a)
+                self._run({name: x[a:b] for name, x in given.items()}, b - a)
                 for a, b in pairwise(edges)
             ]
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
-    @cached_property
-    def _together(self) -> int:
-        chosen, report = self.system, self.report
-        rows = 3 + 2 * len(report.extremes) + chosen.layout.state
-        samples = report.samples if report.history else 0
-        doubles = 12 * (rows + chosen.layout.parameters)
-        doubles += samples * (3 * rows + 2 * chosen.layout.parameters)
-        moved = {target.name[0] for group in self.targets.values() for target in group}
-        if moved & {"times", "angles", "angle"}:  # each flight has paths of its own, and a tape
-            knots = self.batch.begun().course.knots
-            doubles += 6 * knots.shape[1] * chosen.layout.changing
-        return min(_TOGETHER, max(_TOGETHER_BYTES // (8 * doubles), 64))
+    def _run(self, given: Mapping[str, Array], count: int) -> Mapping[str, Array]:
+        """The variables of runs whose varied quantities are `given`."""
+        simulation = self.simulation
+        values = moved(simulation.values, self.vary, self.targets, given)
+        sound = simulation.sound(values, count)
+        if sound.all():
+            return simulation.run(values, count)
+        nominal = simulation.values  # stands in where there is no run, and is struck out again
+        values = {
+            name: np.where(sound, x, nominal[name]) if isinstance(x, np.ndarray) else x
+            for name, x in values.items()
+        }
+        rows = dict(simulation.run(values, count))
+        for name, x in rows.items():
+            rows[name] = np.where(sound.reshape(-1, *[1] * (x.ndim - 1)), x, self._unsound(name))
+        return rows
 
-    def _fly(self, given: Mapping[str, Array], count: int) -> dict[str, Array]:
-        """The variables of flights whose varied quantities are `given`."""
-        chosen = self.system
-        values = moved(self.values, self.vary, self.targets, given)
-        good = self.batch.sound(values, count)
-        if not good.all():  # stand-ins, which are struck out again
-            nominal = self.values
-            values = {
-                n: np.where(good, x, nominal[n]) if isinstance(x, np.ndarray) else x
-                for n, x in values.items()
-            }
-        begun = self.batch.begun(values, count)
-        angles, course = begun.starts.angles, begun.course
-        states, watched = np.split(begun.rows, [chosen.layout.state], 1)
-        watched[:] = _report.first_watched(self.report, chosen, angles, states, course)
-        times = self.report.times(self.duration)
-        found = begun.solve(times, self.accuracy, self.steps)
-        return _report.told(self.report, chosen, course, found, angles, good, times)
+    def _unsound(self, name: str) -> Array:
+        """What a variable is of a run that cannot begin."""
+        endings, variable = self.simulation.endings, self.variables[name]
+        value = endings.code(endings.unsound) if name == ENDED else variable.fill
+        return np.asarray(value, variable.dtype)
 
     @cached_property
     def specification(self) -> dict[str, Any]:
         """All that decides the numbers, as plain data."""
-        takeoff = asdict(self.takeoff)
         return {
-            "model": self.model.name,
-            "axes": list(self.model.axes),
-            "model_sha256": model_digest(self.model),
-            "duration": self.duration,
-            "until": self.until,
-            "accuracy": self.accuracy,
-            "steps": self.steps,
-            "takeoff": _plain(takeoff),
-            "vary": {name: _plain(asdict(v) | _listed(v)) for name, v in self.vary.items()},
+            **self.simulation.specification,
+            "vary": {name: _vary_as_data(vary) for name, vary in self.vary.items()},
             "sample": {"size": self.size, "seed": self.seed, "sequence": self.sequence},
-            "report": _plain(asdict(self.report)),
         }
 
-    @property
-    def engines(self) -> dict[str, str]:
+    @cached_property
+    def versions(self) -> dict[str, str]:
         """Versions of what computes: with others the last digits may be others."""
-        return engines()
+        return versions(self.simulation.packages)
 
 
-def _listed(vary: Vary) -> dict[str, Any]:
+def _vary_as_data(vary: Vary) -> Any:
     """Numbers one by one, however they were given; the digest of very many."""
-    found: dict[str, Any] = {}
+    listed: dict[str, Any] = {}
     for key, given in (("values", vary.grid), ("samples", vary.samples)):
         if given is not None:
             numbers = np.asarray(given, float)
             digest = hashlib.sha256(numbers.tobytes()).hexdigest()
-            found[key] = numbers.tolist() if numbers.size <= _MOST_LISTED else digest
-    return found
+            listed[key] = numbers.tolist() if numbers.size <= _MOST_LISTED else digest
+    return plain(asdict(vary) | listed)
 
 
-@cache
-def engines() -> dict[str, str]:
-    """The versions that this process has."""
-    found = {}
-    for name in _ENGINES:
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            found[name] = "(none)"
-    return found
+def plan(
+    simulation: Simulation,
+    vary: Mapping[str, Vary] | None,
+    size: int | None = None,
+    seed: int = 0,
+    sequence: str = "random",
+) -> Plan:
+    """What `ensemble` would run.
 
+    Parameters
+    ----------
+    simulation
+        What is run: `flight.flights`, for one.
+    vary, size, seed, sequence
+        As for `ensemble`.
 
-def _plain(value: Any) -> Any:
-    """As JSON has it; what was left out is left out."""
-    if isinstance(value, Mapping):
-        return {
-            str(k): _plain(v)
-            for k, v in value.items()
-            if v is not None and not (isinstance(v, tuple) and not v)
-        }
-    if isinstance(value, np.ndarray) and value.size > _MOST_LISTED:  # a recorded path
-        return hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()
-    if isinstance(value, np.ndarray | np.generic):
-        return value.tolist()
-    if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
-    return value
+    Raises
+    ------
+    SomersaultError
+        For what does not fit.
 
-
-def check(plan: Plan) -> None:
-    """SomersaultError, naming what is wrong, unless every part of a plan makes sense."""
-    for name, vary in plan.vary.items():
-        _vary.check(name, vary)
-        if not _NAME.fullmatch(name):
-            raise SomersaultError(
-                f"vary.{name!r} is no name for a quantity; names are of letters, digits, _ and -"
-            )
-        if name == SAMPLE or name in ("time", "steps", "ended", "history_time"):
-            raise SomersaultError(f"vary.{name}: that name is taken; call the quantity otherwise")
-    _check_sample(plan)
-    _report.check(plan.report, plan.system)
-    told = _report.variables(plan.report, plan.system)
-    for name in plan.vary:
-        if name in told:
-            raise SomersaultError(
-                f"vary.{name} has the name of something reported; call it takeoff_{name}, say"
-            )
-    check_apart(plan.vary, plan.targets)
-    if plan.count > MOST_FLIGHTS:
-        shape = " x ".join(f"{n} {length}" for n, length in plan.dims.items())
+    Examples
+    --------
+    >>> import somersault as so
+    >>> vary = {"leant": so.Vary(adds_to="takeoff.tilt", normal=[0.0, 0.1])}
+    >>> so.ensembles.plan(so.flight.flights("furrer"), vary, size=64).dims
+    {'sample': 64}
+    """
+    varied = {n: instance(f"vary.{n}", v, Vary) for n, v in by_name("vary", vary).items()}
+    seed = whole_number("sample.seed", seed, 0, _MOST_SEED)
+    if size is not None:
+        size = whole_number("sample.size", size, 1, MOST_RUNS)
+    else:
+        listed = [len(v.samples) for v in varied.values() if v.samples is not None]
+        size = listed[0] if listed else 1
+    for name, quantity in varied.items():
+        _check_name(name, simulation)
+        _vary.check(name, quantity)
+    targets = {name: moved_by(simulation, name, v) for name, v in varied.items()}
+    check_apart(varied, targets)
+    numbers: dict[Name, None] = {t.name: None for group in targets.values() for t in group}
+    planned = Plan(
+        simulation.with_varied(tuple(numbers)),
+        {name: replace(v, unit=unit(v, targets[name])) for name, v in varied.items()},
+        targets,
+        size,
+        seed,
+        sequence,
+    )
+    _check_sample(planned)
+    if planned.count > MOST_RUNS:
+        shape = " x ".join(f"{n} {length}" for n, length in planned.dims.items())
         raise SomersaultError(
-            f"vary asks for {plan.count:.3g} flights ({shape}); at most {MOST_FLIGHTS:.0e} fly"
+            f"vary asks for {planned.count:.3g} flights ({shape}); at most {MOST_RUNS:.0e} fly"
         )
-    _check_edges(plan)
-    json.dumps(plan.specification)
+    _check_edges(planned)
+    json.dumps(planned.specification)
+    return planned
 
 
-def _check_sample(plan: Plan) -> None:
-    if not isinstance(plan.sequence, str) or plan.sequence not in _vary.SEQUENCES:
+def _check_name(name: str, simulation: Simulation) -> None:
+    if not _NAME.fullmatch(name):
         raise SomersaultError(
-            f"sample.sequence {plan.sequence!r} is none; use {', '.join(_vary.SEQUENCES)}"
+            f"vary.{name!r} is no name for a quantity; names are of letters, digits, _ and -"
         )
-    along = [name for name, v in plan.vary.items() if v.grid is None]
-    drawn = [name for name, v in plan.vary.items() if v.distribution is not None]
-    if plan.size > 1 and not along:
+    if name in (SAMPLE, OVER_TIME, ENDED):
+        raise SomersaultError(f"vary.{name}: that name is taken; call the quantity otherwise")
+    if name in simulation.variables:
         raise SomersaultError(
-            f"sample.size is {plan.size}, but nothing is drawn; give a quantity a distribution"
+            f"vary.{name} has the name of something reported; call it takeoff_{name}, say"
         )
-    for name in along:
-        listed = plan.vary[name].samples
-        if listed is not None and len(listed) != plan.size:
+
+
+def _check_sample(planned: Plan) -> None:
+    size, sequence = planned.size, planned.sequence
+    if not isinstance(sequence, str) or sequence not in _vary.SEQUENCES:
+        raise SomersaultError(
+            f"sample.sequence {sequence!r} is none; use {', '.join(_vary.SEQUENCES)}"
+        )
+    drawn = [name for name, v in planned.vary.items() if v.distribution is not None]
+    if size > 1 and not planned.along_samples:
+        raise SomersaultError(
+            f"sample.size is {size}, but nothing is drawn; give a quantity a distribution"
+        )
+    for name in planned.along_samples:
+        listed = planned.vary[name].samples
+        if listed is not None and len(listed) != size:
             raise SomersaultError(
-                f"vary.{name}.samples has {len(listed)} numbers, but sample.size is {plan.size}"
+                f"vary.{name}.samples has {len(listed)} numbers, but sample.size is {size}"
             )
-        if listed is not None and plan.sequence == "saltelli":
+        if listed is not None and sequence == "saltelli":
             raise SomersaultError(
                 f"vary.{name}.samples cannot go along with the saltelli sequence, which has an "
                 "order of its own; use random, sobol or halton"
             )
-    if plan.sequence == "saltelli" and plan.size % (len(drawn) + 2):
+    if sequence == "saltelli" and size % (len(drawn) + 2):
         raise SomersaultError(
-            f"sample.size is {plan.size}; the saltelli sequence of {len(drawn)} drawn quantities "
+            f"sample.size is {size}; the saltelli sequence of {len(drawn)} drawn quantities "
             f"needs a multiple of {len(drawn) + 2}"
         )
 
 
-def _check_edges(plan: Plan) -> None:
-    """Refuse a grid whose ends cannot take off: a mistake, not a flight that fails."""
-    for name, vary in plan.vary.items():
+def _check_edges(planned: Plan) -> None:
+    """Refuse a grid with an end that no run can begin at: a mistake, not a run that fails."""
+    simulation = planned.simulation
+    for name, vary in planned.vary.items():
         if vary.grid is None:
             continue
         ends = np.array([vary.grid.min(), vary.grid.max()])
-        one = {name: vary}
-        values = moved(plan.values, one, {name: plan.targets[name]}, {name: ends})
-        good = plan.batch.sound(values, 2)
-        if not good.all():
+        one = {name: planned.targets[name]}
+        sound = simulation.sound(moved(simulation.values, {name: vary}, one, {name: ends}), 2)
+        if not sound.all():
             raise SomersaultError(
-                f"vary.{name}.values has {ends[~good][0]:g}, with which there is no takeoff "
-                f"({', '.join(vary.targets)}: limits, order of times, or sign)"
+                f"vary.{name}.values has {ends[~sound][0]:g}, which ends in "
+                f"{simulation.endings.unsound!r} ({', '.join(vary.targets)}: limits, order of "
+                "times, or sign); keep the grid within what is possible"
             )

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from somersault._core.errors import SomersaultError
-from somersault.ensembles._plan import SAMPLE
-from somersault.ensembles._report import ERROR
+from somersault.ensembles._plan import OVER_TIME, SAMPLE
 from somersault.ensembles._summary import quantiles, reported
+from somersault.simulation import LANDING_ERROR
 from somersault.view import style as look
 
 if TYPE_CHECKING:
@@ -23,23 +23,23 @@ def plot(data: xr.Dataset, name: str | None = None) -> Figure:
     """A picture of a reported quantity (landing_error, or the first, where none is named)."""
     if name is None:
         names = [str(n) for n, v in data.data_vars.items() if v.dtype.kind == "f" and n != "time"]
-        name = ERROR if ERROR in names else names[0]
+        name = LANDING_ERROR if LANDING_ERROR in names else names[0]
     values = reported(data, name)
-    grids = [str(d) for d in values.dims if d not in (SAMPLE, "history_time")]
-    if "history_time" in values.dims or len(grids) > 2:
+    grids = [str(d) for d in values.dims if d not in (SAMPLE, OVER_TIME)]
+    if OVER_TIME in values.dims or len(grids) > 2:
         raise SomersaultError(
             f"{name} is over {', '.join(map(str, values.dims))}: draw a part of it"
         )
     with look.style():
-        made = look.figure(6.4, 4.4)
-        ax = made.subplots()
+        picture = look.figure(6.4, 4.4)
+        ax = picture.subplots()
         if len(grids) == 2:
-            _map(made, ax, data, values, grids)
+            _map(picture, ax, data, values, grids)
         elif grids:
             _band(ax, data, values, grids[0])
         else:
             _histogram(ax, values)
-    return made
+    return picture
 
 
 def _named(values: xr.DataArray) -> str:
@@ -48,7 +48,7 @@ def _named(values: xr.DataArray) -> str:
     return f"{plain} ({unit})" if unit not in ("", "1") else plain
 
 
-def _map(made: Any, ax: Any, data: xr.Dataset, values: xr.DataArray, grids: list[str]) -> None:
+def _map(picture: Any, ax: Any, data: xr.Dataset, values: xr.DataArray, grids: list[str]) -> None:
     across, up = grids
     if SAMPLE in values.dims:
         values = values.median(SAMPLE, keep_attrs=True)
@@ -61,7 +61,7 @@ def _map(made: Any, ax: Any, data: xr.Dataset, values: xr.DataArray, grids: list
     )
     ax.set(xlabel=_named(data[across]), ylabel=_named(data[up]))
     more = ", median" if SAMPLE in data[str(values.name)].dims else ""
-    made.colorbar(shown, ax=ax).set_label(_named(values) + more)
+    picture.colorbar(shown, ax=ax).set_label(_named(values) + more)
 
 
 def _band(ax: Any, data: xr.Dataset, values: xr.DataArray, along: str) -> None:

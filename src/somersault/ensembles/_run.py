@@ -1,4 +1,4 @@
-"""The chunks of an ensemble on this machine, in lanes and threads."""
+"""The chunks of an ensemble on this machine, in threads."""
 
 from __future__ import annotations
 
@@ -9,54 +9,54 @@ from itertools import islice
 
 from somersault._core.array import Array
 from somersault.engine import cores, use_threads
+from somersault.ensembles._chunks import Chunks
 from somersault.ensembles._plan import Plan
-from somersault.ensembles._store import Layout
 
 Put = Callable[[int, Mapping[str, Array]], None]
-Told = Callable[[int], None]  # so many more flights are done
+Advance = Callable[[int], None]  # so many more flights are done
 
 
 def on_threads(
-    plan: Plan, cut: Layout, chunks: list[int], put: Put, told: Told, threads: int | None
+    plan: Plan, chunks: Chunks, left: list[int], put: Put, advance: Advance, threads: int | None
 ) -> None:
-    """Fly chunks, each in one thread, and hand their rows to `put` in this one.
+    """Run the chunks that are `left`, each in one thread, and hand their rows to `put` in this one.
 
     Fewer chunks than threads are each shared out among several.
     """
-    if not chunks:
+    if not left:
         return
     most = threads or cores()
-    side_by_side = min(most, len(chunks))
+    side_by_side = min(most, len(left))
     if side_by_side > 1:  # what is compiled, before several threads would
-        first = cut.flights(chunks[0])[0]
-        plan.fly(first, first + 1)
+        first = chunks.runs(left[0])[0]
+        plan.run(first, first + 1)
 
-    def fly(k: int) -> tuple[int, Mapping[str, Array]]:
-        return k, flown(plan, cut, k, most // side_by_side)
+    def run(k: int) -> tuple[int, Mapping[str, Array]]:
+        return k, rows_of(plan, chunks, k, most // side_by_side)
 
     with ThreadPoolExecutor(side_by_side) as pool:
-        for k, rows in _as_done(pool, chunks, 2 * side_by_side, fly):
+        for k, rows in _as_done(pool, left, 2 * side_by_side, run):
             put(k, rows)
-            told(cut.size(k))
+            advance(chunks.size(k))
 
 
-def flown(plan: Plan, cut: Layout, k: int, threads: int) -> Mapping[str, Array]:
+def rows_of(plan: Plan, chunks: Chunks, k: int, threads: int) -> Mapping[str, Array]:
     """The rows of chunk k, on so many threads."""
     with use_threads(threads):
-        return plan.fly(*cut.flights(k))
+        return plan.run(*chunks.runs(k))
 
 
 def _as_done(
-    pool: ThreadPoolExecutor, chunks: Iterable[int], most: int,
-    fly: Callable[[int], tuple[int, Mapping[str, Array]]],
+    pool: ThreadPoolExecutor, left: Iterable[int], most: int,
+    run: Callable[[int], tuple[int, Mapping[str, Array]]],
 ) -> Iterator[tuple[int, Mapping[str, Array]]]:  # fmt: skip
     """Chunks and rows as they finish, never more than `most` begun and not handed on."""
-    ahead = iter(chunks)
-    running = {pool.submit(fly, k) for k in islice(ahead, most)}
+    ahead = iter(left)
+    running = {pool.submit(run, k) for k in islice(ahead, most)}
     try:
         while running:
             done, running = wait(running, return_when=FIRST_COMPLETED)
-            running |= {pool.submit(fly, k) for k in islice(ahead, len(done))}
+            running |= {pool.submit(run, k) for k in islice(ahead, len(done))}
             while done:
                 yield done.pop().result()
     finally:
@@ -65,7 +65,7 @@ def _as_done(
 
 
 @contextmanager
-def progress(total: int, done: int, shown: bool) -> Iterator[Told]:
+def progress_bar(total: int, done: int, shown: bool) -> Iterator[Advance]:
     """A bar with rate and time left on standard error, for `total` flights, `done` before."""
     if not shown or total == done:
         yield lambda more: None

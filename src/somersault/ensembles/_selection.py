@@ -44,17 +44,17 @@ def _ordered(
 ) -> list[float]:
     """The numbers at ranks among those whose keys begin with the `bits` bits of `lead`, which are
     counted by their next ones."""
-    found: list[float] = []
+    numbers: list[float] = []
     before = np.cumsum(counts) - counts
     places = np.searchsorted(before + counts, ranks, side="right")
     for place in np.unique(places).tolist():
         inside = ranks[places == place] - before[place]
         longer, own = bits + _BITS, (lead << _BITS) + place
         if counts[place] <= _FEW or longer == _WHOLE:
-            found += _gathered(blocks, longer, own, inside)
+            numbers += _gathered(blocks, longer, own, inside)
         else:
-            found += _ordered(blocks, _counts(blocks, longer, own), inside, longer, own)
-    return found
+            numbers += _ordered(blocks, _counts(blocks, longer, own), inside, longer, own)
+    return numbers
 
 
 def _gathered(

@@ -11,7 +11,7 @@ import numpy as np
 
 from somersault._core.checks import whole_number
 from somersault._core.errors import SomersaultError
-from somersault.ensembles._plan import SAMPLE
+from somersault.ensembles._plan import OVER_TIME, SAMPLE
 from somersault.ensembles._summary import check_confidence, reported
 from somersault.ensembles._vary import DISTRIBUTIONS
 
@@ -30,20 +30,41 @@ _WORDS = {
 
 
 def sensitivity(data: xr.Dataset, name: str, confidence: float = 0.95, seed: int = 0) -> xr.Dataset:
-    """Sobol' indices of a reported quantity by each drawn one, greatest first.
+    """Sobol' indices: how much of the scatter of a result comes from each drawn quantity.
 
-    `first_order`: the share of the variance that goes if this quantity alone were known;
-    `total`: the share that stays if all others were, from a "saltelli" sequence only. With the
-    half-widths `first_order_confidence`, `total_confidence` from resampling with `seed`. From a
-    saltelli sequence by its own estimator, else by random balance designs (RBD-FAST), both of
-    SALib. At each point of the grids there are.
+    From a saltelli sequence by its own estimator, else by random balance designs (RBD-FAST), both
+    of SALib, at each point of the grids there are.
+
+    Parameters
+    ----------
+    data
+        The dataset of an ensemble.
+    name
+        The reported quantity.
+    confidence
+        Of the half-widths, between 0 and 1.
+    seed
+        Of the resampling that the half-widths are from.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `input`, the drawn quantities, those that matter most first: `first_order`, the share
+        of the variance that would go if this quantity alone were known; from a saltelli sequence
+        `total`, the share that would stay if all others were; and the half-widths
+        `first_order_confidence` and `total_confidence`.
+
+    Raises
+    ------
+    SomersaultError
+        Where nothing is drawn, or there are too few samples.
     """
     check_confidence(confidence)
     seed = whole_number("seed", seed, 0, 2**32 - 1)
     return _ranked(data, name, confidence, seed, _RESAMPLES)
 
 
-def quick(data: xr.Dataset, names: Sequence[str]) -> tuple[dict[str, xr.Dataset], int]:
+def quick_sensitivity(data: xr.Dataset, names: Sequence[str]) -> tuple[dict[str, xr.Dataset], int]:
     """As `sensitivity`, of each name, in a second or so however many samples there are, and how
     many of them each is from. Without half-widths.
 
@@ -57,12 +78,12 @@ def quick(data: xr.Dataset, names: Sequence[str]) -> tuple[dict[str, xr.Dataset]
     most = max(_QUICK // max(rankings * len(_inputs(specification)), 1), _FEWEST)
     used = size if specification["sample"]["sequence"] == "saltelli" else min(size, most)
     half_widths = [key for key in _WORDS if key.endswith("_confidence")]
-    found = {
+    ranked = {
         # One resample, as SALib's estimator of a saltelli sequence cannot do without.
         name: _ranked(data, name, 0.95, 0, 1, used).drop_vars(half_widths, errors="ignore")
         for name in names
     }
-    return found, used
+    return ranked, used
 
 
 def _inputs(specification: Mapping[str, Any]) -> list[str]:
@@ -82,7 +103,7 @@ def _ranked(
     inputs = _inputs(specification)
     if not inputs:
         raise SomersaultError("nothing is drawn in this ensemble, so nothing can be ranked")
-    if SAMPLE not in values.dims or "history_time" in values.dims:
+    if SAMPLE not in values.dims or OVER_TIME in values.dims:
         raise SomersaultError(f"{name} has no single value for each sample to rank")
     if values.sizes[SAMPLE] < _FEWEST:
         raise SomersaultError(
@@ -95,17 +116,17 @@ def _ranked(
     if most is not None and most < len(x):
         taken = np.sort(np.random.default_rng(seed).choice(len(x), most, replace=False))
         x, rows = x[taken], rows[:, taken]
-    found = [_indices(inputs, x, y, design, confidence, seed, resamples) for y in rows]
+    indices = [_indices(inputs, x, y, design, confidence, seed, resamples) for y in rows]
     lead = [str(d) for d in ordered.dims if d != SAMPLE]
     shape = [ordered.sizes[d] for d in lead]
     result = xr.Dataset(
         {
             key: (
                 (*lead, "input"),
-                np.array([f[key] for f in found]).reshape(*shape, len(inputs)),
+                np.array([row[key] for row in indices]).reshape(*shape, len(inputs)),
                 {"units": "1", "long_name": _WORDS[key]},
             )
-            for key in found[0]
+            for key in indices[0]
         },
         {"input": inputs, **{d: data[d] for d in lead if d in data.coords}},
         {"quantity": name, "confidence": confidence},
@@ -136,14 +157,14 @@ def _indices(
         if len(y) < _FEWEST or np.ptp(y) == 0:
             return dict.fromkeys(names, blank)
         if design:
-            found = sobol.analyze(
+            result = sobol.analyze(
                 problem, y, calc_second_order=False, num_resamples=resamples,
                 conf_level=confidence, seed=seed,
             )  # fmt: skip
             keys = ["S1", "S1_conf", "ST", "ST_conf"]
         else:
-            found = rbd_fast.analyze(
+            result = rbd_fast.analyze(
                 problem, x, y, num_resamples=resamples, conf_level=confidence, seed=seed
             )
             keys = ["S1", "S1_conf"]
-    return {name: np.asarray(found[key]) for name, key in zip(names, keys, strict=True)}
+    return {name: np.asarray(result[key]) for name, key in zip(names, keys, strict=True)}

@@ -13,10 +13,11 @@ from somersault._core.array import Array
 from somersault._core.checks import name_list
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number, numbers
-from somersault.ensembles._plan import SAMPLE
-from somersault.ensembles._report import ENDINGS, ERROR, FAILED, UNFLOWN
+from somersault.ensembles._chunks import chunked
+from somersault.ensembles._endings import ending_words, failed, failure_codes, run_already
+from somersault.ensembles._plan import OVER_TIME, SAMPLE
 from somersault.ensembles._selection import quantiles as selected
-from somersault.ensembles._store import layout
+from somersault.simulation import ENDED, LANDING_ERROR, NOT_RUN
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,23 +27,32 @@ _CONFIDENCE = 0.95
 _BLOCK = 2**20  # flights that are read at once
 
 
-def failed(ended: xr.DataArray) -> xr.DataArray:
-    """Whether flights ended otherwise than by their duration or an event; not yet flown: no."""
-    return (ended >= FAILED) & (ended != UNFLOWN)
-
-
 def within(data: xr.Dataset, tolerance: float | None) -> xr.DataArray:
-    """Whether the landing error is at most so much, rad."""
+    """Whether landings were good: whether the landing error is at most so much.
+
+    Parameters
+    ----------
+    data
+        The dataset of an ensemble that reports "landing_error".
+    tolerance
+        In rad.
+
+    Raises
+    ------
+    SomersaultError
+        Where there are no landing errors, or the tolerance is not positive.
+    """
     most = _tolerance(data, tolerance)
-    return data[ERROR] <= most
+    return data[LANDING_ERROR] <= most
 
 
 def _tolerance(data: xr.Dataset, tolerance: float | None) -> float:
     """A positive one; SomersaultError unless there are landing errors to hold against it."""
     _require_dataset(data)
-    if ERROR not in data:
+    if LANDING_ERROR not in data:
         raise SomersaultError(
-            "this ensemble reports no landing_error; give a target, or say which flights are good"
+            "this ensemble reports no landing_error; say against what landings are measured, or "
+            "which flights are good"
         )
     most = number("tolerance", tolerance)
     if most <= 0:
@@ -52,24 +62,60 @@ def _tolerance(data: xr.Dataset, tolerance: float | None) -> float:
 
 def fraction(
     good: xr.DataArray,
-    ended: xr.DataArray,
+    ended: xr.DataArray | None = None,
     over: str | Sequence[str] = SAMPLE,
     confidence: float = _CONFIDENCE,
 ) -> xr.Dataset:
-    """The share of good flights `over` dimensions, with the Clopper–Pearson interval.
+    """The share of good flights, with its confidence interval (Clopper and Pearson).
 
-    `fraction`, `low`, `high` and `flights`, how many were flown. A flight that failed was not
-    good; one not yet flown does not count. Over what is left of the dimensions.
+    Parameters
+    ----------
+    good
+        True or false for each flight.
+    ended
+        `dataset["ended"]` of the ensemble: a flight that failed was not good, and one that is
+        still to come does not count. Without it all count.
+    over
+        The dimensions over which flights are counted; by default those of the samples.
+    confidence
+        That the interval holds the true share, between 0 and 1.
+
+    Returns
+    -------
+    xarray.Dataset
+        `fraction`, `low`, `high`, and `flights`, how many counted, over the dimensions left.
+
+    Raises
+    ------
+    SomersaultError
+        For what does not fit.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import xarray as xr
+    >>> from somersault.ensembles import fraction
+    >>> share = fraction(xr.DataArray(np.arange(20) < 14, dims="sample"))
+    >>> [round(float(share[name]), 2) for name in ("fraction", "low", "high")]
+    [0.7, 0.46, 0.88]
     """
+    if getattr(getattr(good, "dtype", None), "kind", "") != "b":
+        raise SomersaultError("good must be true or false for each flight, like data.tilt < 0.1")
+    if ended is None:
+        return share(good, good | True, over, confidence)
+    return share(good & ~failed(ended), run_already(ended), over, confidence)
+
+
+def share(
+    good: xr.DataArray, counted: xr.DataArray, over: str | Sequence[str], confidence: float
+) -> xr.Dataset:
+    """The share of those counted that are good, as `fraction` gives it."""
     import xarray as xr
 
     check_confidence(confidence)
-    if getattr(getattr(good, "dtype", None), "kind", "") != "b":
-        raise SomersaultError("good must be true or false for each flight, like data.tilt < 0.1")
-    dims = _over(ended, over)
-    flown = ended != UNFLOWN
-    n = flown.sum(dims)
-    hits = (good & flown & ~failed(ended)).sum(dims)
+    dims = _over(counted, over)
+    n = counted.sum(dims)
+    hits = (good & counted).sum(dims)
     low, high = (hits.copy(data=x) for x in _interval(hits.values, n.values, confidence))
     return xr.Dataset(
         {
@@ -102,10 +148,29 @@ def quantiles(
     q: Sequence[float] = (0.05, 0.5, 0.95),
     over: str | Sequence[str] = SAMPLE,
 ) -> xr.Dataset:
-    """Quantiles of a reported quantity `over` dimensions, with its mean and standard deviation.
+    """Quantiles of a reported quantity, with its mean and standard deviation.
 
-    Variables NAME (over `quantile` and what is left of the dimensions), `mean`, `deviation`,
-    `flights` that they are of, and `failed`, which are left out.
+    Parameters
+    ----------
+    data
+        The dataset of an ensemble.
+    name
+        One of its variables.
+    q
+        From 0 to 1.
+    over
+        The dimensions over which flights are gathered; by default those of the samples.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variable NAME over `quantile` and the dimensions left, `mean`, `deviation`, `flights`
+        that they are of, and `failed`, which are left out.
+
+    Raises
+    ------
+    SomersaultError
+        For what does not fit.
     """
     import xarray as xr
 
@@ -121,7 +186,7 @@ def quantiles(
             "mean": values.mean(dims).assign_attrs(units=units),
             "deviation": values.std(dims, ddof=1).assign_attrs(units=units),
             "flights": values.notnull().sum(dims),
-            "failed": failed(data["ended"]).sum(dims),
+            "failed": failed(data[ENDED]).sum(dims),
         }
     )
 
@@ -159,37 +224,47 @@ def summary(data: xr.Dataset, tolerance: float | None = None) -> dict[str, Any]:
 
     Exact, and read a million flights at a time however many there are.
     """
-    ended = data["ended"]
-    counts = np.zeros(UNFLOWN + 1, int)
-    for codes in _blocks(ended):
-        counts += np.bincount(codes, minlength=UNFLOWN + 1)
-    found: dict[str, Any] = {
-        "flights": int(ended.size),
-        "ended": {word: int(counts[k]) for k, word in enumerate(ENDINGS) if counts[k]},
-    }
+    ended = data[ENDED]
+    row: dict[str, Any] = {"flights": int(ended.size), "ended": endings(data)}
     table = {}
     for name, values in data.data_vars.items():
-        if values.dtype.kind != "f" or "history_time" in values.dims:
+        if values.dtype.kind != "f" or OVER_TIME in values.dims:
             continue
         low, middle, high = selected(partial(_blocks, values), (0.05, 0.5, 0.95)).tolist()
         if not np.isnan(middle):
             unit = values.attrs.get("units", "")
             table[str(name)] = {"5%": low, "median": middle, "95%": high, "unit": unit}
-    found["reported"] = table
+    row["reported"] = table
     if tolerance is not None:
-        most = _tolerance(data, tolerance)
-        pairs = zip(_blocks(data[ERROR]), _blocks(ended), strict=True)
-        hits = sum(int(((error <= most) & (e < FAILED)).sum()) for error, e in pairs)
-        flown = int(ended.size - counts[UNFLOWN])
-        low, high = _interval(np.array(hits), np.array(flown), _CONFIDENCE)
-        row = (hits / flown, float(low), float(high)) if flown else (np.nan,) * 3
-        share = dict(zip(("fraction", "low", "high"), row, strict=True))
-        found["within_tolerance"] = {"tolerance": tolerance, **share}
-    return found
+        row["within_tolerance"] = _landed_within(data, _tolerance(data, tolerance), tolerance)
+    return row
+
+
+def endings(data: xr.Dataset) -> dict[str, int]:
+    """How many flights ended in each way, those that none ended in left out."""
+    counts = np.zeros(NOT_RUN + 1, int)
+    for codes in _blocks(data[ENDED]):
+        counts += np.bincount(codes, minlength=NOT_RUN + 1)
+    words = ending_words(data[ENDED])
+    return {word: int(counts[k]) for k, word in enumerate(words) if counts[k]}
+
+
+def _landed_within(data: xr.Dataset, most: float, tolerance: float) -> dict[str, float]:
+    """The share of landings with an error of at most `most`, rad."""
+    lost = [*failure_codes(data[ENDED]), NOT_RUN]
+    hits = counted = 0
+    for error, codes in zip(_blocks(data[LANDING_ERROR]), _blocks(data[ENDED]), strict=True):
+        hits += int(((error <= most) & ~np.isin(codes, lost)).sum())
+        counted += int((codes != NOT_RUN).sum())
+    low, high = _interval(np.array(hits), np.array(counted), _CONFIDENCE)
+    row = (hits / counted, float(low), float(high)) if counted else (np.nan,) * 3
+    return {
+        "tolerance": tolerance, **dict(zip(("fraction", "low", "high"), row, strict=True)),
+    }  # fmt: skip
 
 
 def _blocks(values: xr.DataArray) -> Iterator[Array]:
     """All values, in order, in flat blocks that are read one at a time."""
-    cut = layout({str(dim): length for dim, length in values.sizes.items()}, _BLOCK)
-    for k in range(len(cut)):
-        yield values[cut.region(k)].values.ravel()
+    blocks = chunked({str(dim): length for dim, length in values.sizes.items()}, _BLOCK)
+    for k in range(len(blocks)):
+        yield values[blocks.region(k)].values.ravel()

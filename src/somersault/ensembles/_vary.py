@@ -20,7 +20,7 @@ from somersault._core.numbers import number, numbers
 SEQUENCES = ("random", "sobol", "halton", "saltelli")
 _EDGE = 2.0**-54  # keeps draws inside (0, 1), where every distribution is finite
 _MOST = 10**7  # values of one grid, which are all held in memory
-_LONGEST = 300  # characters that are told of a list
+_LONGEST = 300  # characters of a list that a message shows
 
 # Of each distribution: what its numbers are, and its quantile function.
 DISTRIBUTIONS: dict[str, tuple[str, Any]] = {
@@ -217,15 +217,15 @@ def draws(vary: Mapping[str, Vary], sequence: str, seed: int, places: Array) -> 
     first, last = int(places[0]), int(places[-1])
     within = places - first
     drawn = [name for name, v in vary.items() if v.distribution is not None]
-    found = {}
+    values = {}
     uniforms = _uniforms(drawn, sequence, seed, first, last + 1 - first)
     for name, v in vary.items():
         if v.samples is not None:
-            found[name] = np.asarray(v.samples, float)[places]
+            values[name] = np.asarray(v.samples, float)[places]
         elif v.distribution is not None:
             u = np.clip(uniforms[name], _EDGE, 1 - _EDGE)
-            found[name] = v.quantile(u)[within]
-    return found
+            values[name] = v.quantile(u)[within]
+    return values
 
 
 def _uniforms(
@@ -266,7 +266,7 @@ def _points(engine: Any, first: int, count: int) -> Array:
 
 
 def _random(name: str, seed: int, first: int, count: int) -> Array:
-    """A stream of the quantity's own, so that others may come and go beside it."""
+    """A stream of the quantity's own, so that others may come and go."""
     stream = np.random.SeedSequence([seed, zlib.crc32(name.encode())])
     return np.random.Generator(np.random.PCG64DXSM(stream).advance(first)).random(count)
 

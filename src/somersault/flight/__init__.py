@@ -16,12 +16,14 @@ from somersault.flight._maneuvers import (
     torque_twist,
     twist_time,
 )
+from somersault.flight._many import Flights, flights
 from somersault.flight._prescribed import prescribed
 from somersault.flight._principal import (
     principal_attitude,
     principal_axes_along,
     rigid_continuation,
 )
+from somersault.flight._report import ENDINGS, Report, landing_error, landing_target
 from somersault.flight._swing import (
     GRAVITY,
     Release,
@@ -37,15 +39,18 @@ from somersault.flight.behaviours import JointTakeoff
 
 __all__ = [
     "BROKEN",
+    "ENDINGS",
     "GRAVITY",
     "BallisticPath",
     "Batch",
     "Begun",
     "Flight",
+    "Flights",
     "JointTakeoff",
     "Landing",
     "Maneuver",
     "Release",
+    "Report",
     "Stop",
     "Swing",
     "Takeoff",
@@ -53,12 +58,15 @@ __all__ = [
     "cat_turn",
     "compliant",
     "deviated_flight",
+    "flights",
     "fly",
     "height_energy",
     "hula",
     "inertia_change",
     "joint_power",
     "joint_work",
+    "landing_error",
+    "landing_target",
     "off_nominal",
     "prescribed",
     "principal_attitude",

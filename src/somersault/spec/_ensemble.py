@@ -8,10 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from somersault._core.errors import SomersaultError
-from somersault.ensembles._ensemble import plan
-from somersault.ensembles._plan import Plan
-from somersault.ensembles._report import Report
-from somersault.ensembles._vary import DISTRIBUTIONS, Vary
+from somersault.ensembles import DISTRIBUTIONS, Plan, Vary, plan
+from somersault.flight import Report, flights
 from somersault.spec._flight import TOP, parse_spec, read_toml
 from somersault.spec._keys import NUMBER, NUMBERS, TEXT, TEXTS, WHOLE, check_keys
 
@@ -27,10 +25,14 @@ _ACCURACY = 1e-7
 
 @dataclass(frozen=True)
 class EnsembleSpec:
-    """What a SPEC file asks for; `tolerance` of landings, if it gives one."""
+    """What a SPEC file asks for; `tolerance` of landings, if it gives one.
+
+    `quantities` are what is reported of each flight's end.
+    """
 
     plan: Plan
     tolerance: float | None
+    quantities: tuple[str, ...]
 
 
 def read_ensemble(path: Path) -> EnsembleSpec:
@@ -61,25 +63,27 @@ def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
     tolerance = target.pop("tolerance", None)
     if tolerance is not None and not (tolerance > 0 and target):
         raise SomersaultError(
-            "target.tolerance must be a positive number, beside angles to land at"
+            "target.tolerance must be a positive number, together with angles to land at"
         )
     vary = {name: _vary(name, table) for name, table in given.get("vary", {}).items()}
     default = Report.quantities + (("landing_error",) if target else ())
-    told = Report(
+    reported = Report(
         tuple(report.get("quantities", default)), tuple(report.get("extremes", ())),
-        tuple(report.get("history", ())), int(report.get("samples", 0)), target,
+        tuple(report.get("history", ())), int(report.get("samples", 0)),
     )  # fmt: skip
-    if tolerance is not None and "landing_error" not in told.quantities:
+    if tolerance is not None and "landing_error" not in reported.quantities:
         raise SomersaultError("target.tolerance needs landing_error among report.quantities")
     accuracy = flight.options["accuracy"] if "accuracy" in given else _ACCURACY
     size = sample.get("size")
-    planned = plan(
-        flight.model, flight.takeoff, flight.duration, vary,
-        None if size is None else int(size), int(sample.get("seed", 0)),
-        sample.get("sequence", "random"), told, accuracy, flight.options["until"],
-        flight.options["steps"],
+    many = flights(
+        flight.model, flight.takeoff, flight.duration, report=reported, against=target,
+        accuracy=accuracy, until=flight.options["until"], steps=flight.options["steps"],
     )  # fmt: skip
-    return EnsembleSpec(planned, tolerance)
+    planned = plan(
+        many, vary, None if size is None else int(size), int(sample.get("seed", 0)),
+        sample.get("sequence", "random"),
+    )  # fmt: skip
+    return EnsembleSpec(planned, tolerance, reported.quantities)
 
 
 def _vary(name: str, table: Any) -> Vary:

@@ -10,8 +10,8 @@ import numpy as np
 
 from somersault import stability as st
 from somersault._core.array import Array
-from somersault.ensembles import Report, Vary, ensemble
-from somersault.flight import JointTakeoff, Takeoff
+from somersault.ensembles import Vary, ensemble
+from somersault.flight import JointTakeoff, Report, Takeoff
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result, Table
 from somersault.thesis.ch4._furrer import ANGLE, GROWS, MODEL, STIFFNESS, both, shoulder_inertia

@@ -10,7 +10,7 @@ import xarray as xr
 
 from somersault import stability as st
 from somersault._core.array import Array
-from somersault.ensembles import ENDINGS, fraction
+from somersault.ensembles import fraction
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result, Table
 from somersault.thesis.ch5 import _launch_scatter as likelihood
@@ -35,8 +35,7 @@ _LUCK = 0.05
 def intervals(outcome: Outcome) -> xr.Dataset:
     """The share of stable launches of each condition, with its 95 % interval."""
     good = xr.DataArray(outcome.stable, dims=("condition", "sample"))
-    ended = xr.full_like(good, ENDINGS.index("duration"), dtype="u1")
-    return fraction(good, ended)
+    return fraction(good)
 
 
 @cache

@@ -15,7 +15,7 @@ import numpy as np
 from scipy import stats
 
 from somersault._core.array import Array
-from somersault.ensembles import ENDINGS, Report, Vary, ensemble
+from somersault.ensembles import Vary, ended_by, ensemble
 from somersault.flight import JointTakeoff
 from somersault.thesis.ch5 import _launcher as launcher
 from somersault.thesis.ch5._doll import BEST, WEIGHTED, shoulder_inertia
@@ -136,12 +136,12 @@ def _flown(
         size=count,
         seed=seed,
         sequence=sequence,
-        report=Report(("somersaults",)),
+        report=["somersaults"],
         accuracy=_ACCURACY,
         until="quarter twist",
     ).dataset
     rows = (-1, count)
-    stable = flown["ended"].values == ENDINGS.index("duration")
+    stable = ended_by(flown["ended"], "duration").values
     return Outcome(flown["somersaults"].values.reshape(rows), stable.reshape(rows))
 
 

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.ensembles import landing_error, landing_target
-from somersault.flight import Flight, fly, off_nominal
+from somersault.flight import Flight, fly, landing_error, landing_target, off_nominal
 from somersault.model import named_pose
 from somersault.thesis._claims import number, statement
 from somersault.thesis._entries import Result, Table

@@ -1,0 +1,183 @@
+"""Many flights of one maneuver, as an ensemble asks for them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from somersault._core.array import Array
+from somersault._core.checks import name_list
+from somersault._core.plain import plain
+from somersault.flight._batch import Batch
+from somersault.flight._flight import Flight
+from somersault.flight._maneuver import STEPS, check_limits_of_flight, flight_time
+from somersault.flight._report import ENDINGS, Report, check, target_of, variables
+from somersault.flight._reported import reported, watch_from_takeoff
+from somersault.flight._takeoff import Takeoff, require_takeoff
+from somersault.flight._targets import body_names, targets
+from somersault.model import Model, load, model_digest
+from somersault.simulation import Endings, Name, Numbers, Target, Variable
+
+ACCURACY = 1e-7  # rad
+_TOGETHER = 16_384  # flights whose numbers are held at once,
+_TOGETHER_BYTES = 2**26  # or as many as these hold
+_FEWEST_TOGETHER = 64
+_OF_PATHS = ("times", "angles", "angle", "torques", "factor", "offset")
+
+
+@dataclass(frozen=True, eq=False)
+class Flights:
+    """Flights of one maneuver, and what is reported of each: a `somersault.simulation.Simulation`.
+
+    Made by `flights`. `target` are the angles to land at, `accuracy` is in rad, and a flight that
+    is not done after so many `steps` of the integration has failed. `varied` are the numbers in
+    which the flights differ.
+    """
+
+    batch: Batch
+    report: Report
+    target: Mapping[str, float]
+    accuracy: float
+    steps: int
+    varied: tuple[Name, ...] = ()
+
+    def __getstate__(self) -> dict[str, Any]:
+        state = {field.name: getattr(self, field.name) for field in fields(self)}
+        return state | {"batch": replace(self.batch)}  # without what is compiled
+
+    @property
+    def name(self) -> str:
+        """The model's."""
+        return self.batch.model.name
+
+    @property
+    def packages(self) -> tuple[str, ...]:
+        """The packages whose versions decide the last digits."""
+        return ("somersault", "casadi", "llvmlite", "numpy", "scipy")
+
+    @cached_property
+    def specification(self) -> dict[str, Any]:
+        """All that decides the numbers, as plain data."""
+        batch = self.batch
+        joints = {n: {"motion": j.motion, **plain(j)} for n, j in batch.takeoff.joints.items()}
+        return {
+            "model": batch.model.name,
+            "axes": list(batch.model.axes),
+            "model_sha256": model_digest(batch.model),
+            "duration": batch.duration,
+            "until": batch.until,
+            "accuracy": self.accuracy,
+            "steps": self.steps,
+            "takeoff": {**plain(batch.takeoff), "joints": joints},
+            "report": plain(self.report),
+            "target": plain(self.target),
+        }
+
+    @property
+    def values(self) -> Numbers:
+        """The numbers of the takeoff, and those of bodies that are varied."""
+        return self.batch.values
+
+    @cached_property
+    def variables(self) -> dict[str, Variable]:
+        """What is reported of each flight."""
+        return variables(self.report, self.batch.model)
+
+    @cached_property
+    def times(self) -> Array:
+        """The times of histories, s."""
+        return self.report.times(self.batch.duration)
+
+    @property
+    def endings(self) -> Endings:
+        """How a flight can end."""
+        return ENDINGS
+
+    @cached_property
+    def together(self) -> int:
+        """How many flights are held in memory at once."""
+        layout, report = self.batch.system.layout, self.report
+        rows = 3 + 2 * len(report.extremes) + layout.state
+        doubles = 12 * (rows + layout.parameters)
+        doubles += len(self.times) * (3 * rows + 2 * layout.parameters)
+        if any(name[0] in _OF_PATHS for name in self.varied):  # each has its own paths and tape
+            knots = self.batch.begun().course.knots
+            doubles += 6 * knots.shape[1] * layout.changing
+        return min(_TOGETHER, max(_TOGETHER_BYTES // (8 * doubles), _FEWEST_TOGETHER))
+
+    def targets(self, path: str) -> tuple[Target, ...]:
+        """The numbers that a name like "takeoff.tilt" means; SomersaultError for one that is not
+        there."""
+        return targets(self.batch, path)
+
+    def with_varied(self, names: tuple[Name, ...]) -> Flights:
+        """The same flights, to differ in these numbers."""
+        batch = replace(self.batch, bodies=body_names(names))
+        _ = batch.system  # refuses what cannot fly, before anything is written
+        return replace(self, batch=batch, varied=names)
+
+    def sound(self, values: Numbers, count: int) -> Array:
+        """Whether each flight can take off, (count,)."""
+        return self.batch.sound(values, count)
+
+    def run(self, values: Numbers, count: int) -> dict[str, Array]:
+        """What is reported of `count` flights, and how they ended."""
+        begun = self.batch.begun(values, count)
+        watch_from_takeoff(self.report, begun)
+        samples = self.times if len(self.times) else np.array([self.batch.duration])
+        solution = begun.solve(samples, self.accuracy, self.steps)
+        return reported(self.report, self.target, begun, solution, self.times)
+
+
+def flights(
+    model: str | Model,
+    takeoff: Takeoff | None = None,
+    duration: float = 1.0,
+    *,
+    report: Report | Sequence[str] = Report.quantities,
+    against: Flight | Mapping[str, float] | None = None,
+    until: str | None = None,
+    accuracy: float = ACCURACY,
+    steps: int = STEPS,
+) -> Flights:
+    """Flights of one maneuver that an ensemble may vary.
+
+    Parameters
+    ----------
+    model, takeoff, duration, until
+        As for `somersault.fly`.
+    report
+        A `Report`, or the names of its quantities.
+    against
+        What "landing_error" is measured against: the landing of a flight, or angles by name (rad;
+        somersault, tilt, twist and joint coordinates).
+    accuracy
+        Of the attitude, rad.
+    steps
+        A flight that is not done after so many steps of the integration has failed.
+
+    Raises
+    ------
+    SomersaultError
+        For what does not fit.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> so.flight.flights("furrer", so.Takeoff(spin=8.64), 2.0, report=["twist"]).name
+    'furrer'
+    """
+    duration = flight_time(duration)
+    check_limits_of_flight(accuracy, until, steps)
+    takeoff = Takeoff() if takeoff is None else takeoff
+    require_takeoff(takeoff)
+    if not isinstance(report, Report):
+        report = Report(name_list("report, unless it is a Report,", report))
+    target = target_of(against)
+    batch = Batch(load(model), takeoff, duration, until, extremes=report.extremes)
+    check(report, target, batch.model)
+    return Flights(batch, report, target, float(accuracy), int(steps))

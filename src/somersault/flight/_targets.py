@@ -1,0 +1,113 @@
+"""From names like "joints.shoulder.stiffness" to the numbers of a takeoff that they mean."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+import numpy as np
+
+from somersault._core.errors import SomersaultError
+from somersault.dynamics import parameter_names
+from somersault.flight._batch import Batch
+from somersault.flight.behaviours import Coupled, declared
+from somersault.model import Model, sides
+from somersault.simulation import Name, Numbers, Target
+
+_JOINT = re.compile(r"^joints\.(.+)\.([^\W\d]\w*)(?:\.(\d+))?$")
+_BODY = re.compile(r"^bodies\.(.+)\.(?:(mass)|(com|position)\.([123]))$")
+_TAKEOFF = re.compile(r"^takeoff\.(\w+)(?:\.([123]))?$")
+_VECTORS = ("angular_velocity", "angular_momentum")
+_OF_BODIES = ("mass.", "inertia.", "com.", "position.")
+_UNITS = {
+    "somersault": "rad", "tilt": "rad", "twist": "rad", "spin": "rad/s", "tilt_rate": "rad/s",
+    "twist_rate": "rad/s", "angular_velocity": "rad/s", "angular_momentum": "kg m2/s",
+}  # fmt: skip
+
+
+def targets(batch: Batch, path: str) -> tuple[Target, ...]:
+    """The numbers that a name means, of the flights of a batch.
+
+    Raises
+    ------
+    SomersaultError
+        For a name that is not there.
+    """
+    if match := _TAKEOFF.match(path):
+        return _of_takeoff(batch.values, path, *match.groups())
+    if match := _JOINT.match(path):
+        return _of_joint(batch, path, *match.groups())
+    if match := _BODY.match(path):
+        return _of_body(batch.model, *match.groups())
+    raise SomersaultError(
+        f"{path!r} names no number; names are like takeoff.tilt, joints.JOINT.stiffness, "
+        "joints.JOINT.times.2, bodies.BODY.mass"
+    )
+
+
+def body_names(names: Iterable[Name]) -> tuple[str, ...]:
+    """Those of some names that are the bodies' numbers, as `Equations` has them."""
+    return tuple(str(name[0]) for name in names if str(name[0]).startswith(_OF_BODIES))
+
+
+def _of_takeoff(values: Numbers, path: str, what: str, k: str | None) -> tuple[Target, ...]:
+    name: Name = (what, int(k)) if k else ("takeoff", what)
+    if name not in values:
+        there = [_spelled(n) for n in values if n[0] in ("takeoff", *_VECTORS)]
+        raise SomersaultError(f"{path} is no number of this takeoff; it has {', '.join(there)}")
+    return (Target(name, unit=_UNITS[what]),)
+
+
+def _spelled(name: Name) -> str:
+    parts = name if name[0] == "takeoff" else ("takeoff", *name)
+    return ".".join(str(part) for part in parts)
+
+
+def _of_joint(
+    batch: Batch, path: str, joint: str, what: str, k: str | None
+) -> tuple[Target, ...]:
+    both, values = sides(batch.model, joint), batch.values
+    does = {plan.joint.name: plan.does for plan in batch.joints}
+    meant: list[Target] = []
+    for name, (factor, offset) in both.items():
+        slides = batch.model.joint(name).kind == "slide"
+        every: list[Name] = [n for n in values if n[:2] == (what, name)]
+        wanted: list[Name] = [(what, name, int(k))] if k else every
+        if not wanted or any(n not in values for n in wanted):
+            there = sorted(
+                {".".join(str(x) for x in (n[0], *n[2:])) for n in values if name in n[1:2]}
+            )
+            raise SomersaultError(
+                f"{path} is no number of this takeoff; joint {name} has {', '.join(there)}"
+            )
+        if len(both) > 1 and isinstance(does[name], Coupled):
+            raise SomersaultError(f"{path} is of joints that follow others; name one at a time")
+        known = declared(does[name])[what]
+        by = 1.0 if known.image == "same" else factor
+        about = offset if known.image == "angle" else 0.0
+        unit = known.slide_unit if slides else known.unit
+        meant += [Target(n, by, about, unit) for n in wanted]
+    return tuple(meant)
+
+
+def _of_body(
+    model: Model, body: str, mass: str | None, what: str | None, k: str | None
+) -> tuple[Target, ...]:
+    names = [b.name for b in model.bodies]
+    if body not in names:
+        raise SomersaultError(f"there is no body {body!r}; there are {', '.join(names)}")
+    if not mass:
+        if f"{what}.{body}.{k}" not in parameter_names(model):
+            raise SomersaultError(f"{body} is the base, which has no position to vary")
+        return (Target((f"{what}.{body}.{k}",), unit="m"),)
+    own = model.bodies[names.index(body)]
+    if own.mass <= 0:
+        raise SomersaultError(f"body {body} has no mass, so none can be varied")
+    inertia = np.asarray(own.inertia)
+    # The same shape, denser: moments of inertia go with the mass.
+    return Target((f"mass.{body}",), unit="kg"), *(
+        Target((f"inertia.{body}.{i + 1}{j + 1}",), float(inertia[i, j]) / own.mass)
+        for i in range(3)
+        for j in range(i, 3)
+        if inertia[i, j] != 0
+    )
