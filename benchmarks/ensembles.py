@@ -28,10 +28,10 @@ import numpy as np
 
 import somersault as so
 from somersault.engine import Integrator, cores, use_threads
-from somersault.ensembles import _cluster, _store
-from somersault.ensembles._ensemble import STEPS, _chunk, carried_out, plan
-from somersault.ensembles._plan import Plan
-from somersault.flight import JointTakeoff, Takeoff
+from somersault.ensembles import Plan, _cluster, _store, carried_out, plan
+from somersault.ensembles._chunks import chunked
+from somersault.ensembles._ensemble import chunk_size
+from somersault.flight import JointTakeoff, Takeoff, flights
 from somersault.stability import spin as steady_spin
 
 SPIN, TURNS = 8.64, 8  # rad/s; somersaults of a layout flight
@@ -52,9 +52,9 @@ size = 1000
 """
 
 
-def lifetimes(flights: int) -> Plan:
+def lifetimes(count: int) -> Plan:
     """Figure 4-12 with a scatter of tilt and twist at every point: about so many flights."""
-    size = max(1, round(flights / GRID**2))
+    size = max(1, round(count / GRID**2))
     inertia = steady_spin("furrer", 2, {"shoulder": 1.4}).outboard_inertias["left_shoulder"]
     vary = {
         "arm_angle": so.Vary(
@@ -69,10 +69,11 @@ def lifetimes(flights: int) -> Plan:
     }  # fmt: skip
     joint = JointTakeoff("sprung", angle=1.4, stiffness=30.0, hold=True)
     takeoff = Takeoff(tilt=0.01, spin=SPIN, joints={"shoulder": joint})
-    told = so.Report(("somersaults", "tilt", "twist"))
-    return plan(
-        "furrer", takeoff, DURATION, vary, size, 1, "sobol", told, 1e-7, "quarter twist", STEPS
-    )
+    many = flights(
+        "furrer", takeoff, DURATION, report=["somersaults", "tilt", "twist"],
+        until="quarter twist",
+    )  # fmt: skip
+    return plan(many, vary, size, seed=1, sequence="sobol")
 
 
 def load() -> str:
@@ -90,11 +91,11 @@ def size_of(store: Path) -> tuple[int, int]:
 # ----------------------------------------------------------------- time and memory of a whole
 
 
-def in_child(flights: int, store: Path, *more: str) -> dict[str, Any]:
+def in_child(count: int, store: Path, *more: str) -> dict[str, Any]:
     """A whole ensemble in a process of its own: wall and processor seconds, peak memory."""
     before = load()
     done = subprocess.run(
-        [sys.executable, __file__, "--child", str(store), "--flights", str(flights), *more],
+        [sys.executable, __file__, "--child", str(store), "--flights", str(count), *more],
         stdout=subprocess.PIPE, check=True, text=True,
     )  # fmt: skip
     total, files = size_of(store)
@@ -103,11 +104,11 @@ def in_child(flights: int, store: Path, *more: str) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def child(flights: int, store: Path, threads: int | None) -> None:
+def child(count: int, store: Path, threads: int | None) -> None:
     """Fly an ensemble into a store and print what it took as JSON."""
     import resource
 
-    made = lifetimes(flights)
+    made = lifetimes(count)
     begun, busy = time.perf_counter(), time.process_time()
     carried_out(made, store, threads=threads)
     taken, busy = time.perf_counter() - begun, time.process_time() - busy
@@ -117,7 +118,7 @@ def child(flights: int, store: Path, threads: int | None) -> None:
     print(json.dumps({
         "flights": made.count, "seconds": taken, "processor_seconds": busy,
         "peak_bytes": peak * (1 if sys.platform == "darwin" else 1024),
-        "chunk": _store.layout(made.dims, _chunk(made)).size(0),
+        "chunk": chunked(made.dims, chunk_size(made)).size(0),
         "failed": int((ended >= 2).sum()), "to_the_end": float((ended == 0).mean()),
         "mean_time": float(found["time"].mean()), "mean_steps": float(found["steps"].mean()),
     }))  # fmt: skip
@@ -150,10 +151,10 @@ def one_by_one(count: int = 200) -> dict[str, float]:
     with use_threads(1):
         ends = [fly(start) for start in starts]
     alone = (time.thread_time() - busy) / count
-    made.fly(0, 1)
+    made.run(0, 1)
     busy = time.thread_time()
     with use_threads(1):
-        rows = made.fly(0, made.count)
+        rows = made.run(0, made.count)
     together = (time.thread_time() - busy) / made.count
     # Flights are the same; what `fly` samples is landed on by a shorter step.
     assert np.allclose(rows["time"][places], ends, atol=1e-4), "not the same flights"
@@ -182,32 +183,32 @@ class Stopwatch:
         return timed
 
 
-def outside(flights: int, folder: Path, chunks: int = 4) -> dict[str, float]:
+def outside(count: int, folder: Path, most: int = 4) -> dict[str, float]:
     """Shares of chunks of the default size, flown and written in one thread."""
-    made = lifetimes(flights)
-    cut = _store.layout(made.dims, _chunk(made))
+    made = lifetimes(count)
+    chunks = chunked(made.dims, chunk_size(made))
     store = folder / "outside.zarr"
-    _store.create(store, made, cut)
-    made.fly(0, 8)  # compiles
-    watch, engine = Stopwatch(), made.system.integrator
+    _store.create(store, made, chunks)
+    made.run(0, 8)  # compiles
+    watch, engine = Stopwatch(), made.simulation.batch.system.integrator
     engine.__dict__["_fly"] = watch.around("machine code", engine._fly)
     plain = Integrator.solve
     Integrator.solve = watch.around("solve", plain)  # type: ignore[method-assign]
     write = watch.around("written", _store.write)
     # Chunks spread over the map: some fall early, some last.
-    which = np.linspace(0, len(cut) - 1, min(chunks, len(cut))).astype(int)
+    which = np.linspace(0, len(chunks) - 1, min(most, len(chunks))).astype(int)
     begun = time.process_time()
     try:
         with use_threads(1):
             for k in which:
-                write(store, made, cut, int(k), made.fly(*cut.flights(int(k))))
+                write(store, made, chunks, int(k), made.run(*chunks.runs(int(k))))
     finally:
         Integrator.solve = plain  # type: ignore[method-assign]
         del engine.__dict__["_fly"]
     whole = time.process_time() - begun
-    flown = sum(cut.size(int(k)) for k in which)
+    flown = sum(chunks.size(int(k)) for k in which)
     return {
-        "chunk": cut.size(0), "chunks": len(which), "seconds_a_chunk": whole / len(which),
+        "chunk": chunks.size(0), "chunks": len(which), "seconds_a_chunk": whole / len(which),
         "seconds_a_flight": whole / flown,
         "outside_machine_code": 1 - watch.seconds["machine code"] / whole,
         "outside_solve": 1 - watch.seconds["solve"] / whole,
@@ -278,34 +279,34 @@ def _busy(before: dict[str, float], after: dict[str, float], seconds: float) -> 
     return sum(most.values()) / len(most) / seconds if most else None
 
 
-def on_dask(workers: int, made: Plan, most: int, chunks: int, store: Path, seen: bool) -> dict:
+def on_dask(workers: int, made: Plan, most: int, count: int, store: Path, seen: bool) -> dict:
     """Some chunks of at most so many flights on warm workers of one thread each.
 
     `seen`: the workers write into the store. Otherwise rows travel back, and the program writes.
     """
-    cut = _store.layout(made.dims, most)
-    _store.create(store, made, cut)
+    chunks = chunked(made.dims, most)
+    _store.create(store, made, chunks)
     path = str(store) if seen else None
 
     def put(k: int, rows: Any) -> None:
-        _store.write(store, made, cut, k, rows)
+        _store.write(store, made, chunks, k, rows)
 
     with dask(workers) as (client, scheduler, theirs), _cluster._unlogged():
         shared = client.scatter(made, broadcast=True, hash=False)
         client.run(_warm, made)
-        which = np.linspace(0, len(cut) - 1, min(chunks, len(cut))).astype(int).tolist()
+        which = np.linspace(0, len(chunks) - 1, min(count, len(chunks))).astype(int).tolist()
         before, own = _seconds(theirs), time.process_time()
         governed, wanted = _seconds([scheduler]), _wanted(theirs)
         begun = time.perf_counter()
-        for _ in _cluster._flown(client, shared, cut, which, put, path, 1, made.engines):
+        for _ in _cluster._as_done(client, shared, chunks, which, put, path, 1, made.versions):
             pass
         taken = time.perf_counter() - begun
         own, used = time.process_time() - own, _seconds(theirs) - before
         governed = _seconds([scheduler]) - governed
         busy = _busy(wanted, _wanted(theirs), taken)
-    flown = sum(cut.size(k) for k in which)
+    flown = sum(chunks.size(k) for k in which)
     return {
-        "workers": workers, "chunk": cut.size(0), "chunks": len(which), "flights": flown,
+        "workers": workers, "chunk": chunks.size(0), "chunks": len(which), "flights": flown,
         "seconds": taken, "seconds_a_chunk": taken / len(which), "busy": busy,
         "program": own / len(which), "scheduler": governed / len(which),
         "workers_processor": used / len(which), "bytes_a_chunk": size_of(store)[0] / len(which),
@@ -313,30 +314,31 @@ def on_dask(workers: int, made: Plan, most: int, chunks: int, store: Path, seen:
 
 
 def _warm(made: Plan) -> None:
-    made.fly(0, 8)
+    made.run(0, 8)
 
 
-def cluster(flights: int, folder: Path, chunks: int, rounds: int) -> dict[str, Any]:
+def cluster(count: int, folder: Path, most: int, rounds: int) -> dict[str, Any]:
     """What dask adds to a chunk, and one worker against two."""
-    made = lifetimes(flights)
+    made = lifetimes(count)
     found: dict[str, Any] = {}
     tiny = lifetimes(GRID**2 * TINY)
-    cut = _store.layout(tiny.dims, TINY)
-    which = np.linspace(0, len(cut) - 1, 16 * chunks).astype(int).tolist()
-    tiny.fly(0, 8)
+    chunks = chunked(tiny.dims, TINY)
+    which = np.linspace(0, len(chunks) - 1, 16 * most).astype(int).tolist()
+    tiny.run(0, 8)
     with use_threads(1):
         begun = time.thread_time()
         for k in which:
-            tiny.fly(*cut.flights(k))
+            tiny.run(*chunks.runs(k))
         found["tiny_flown"] = (time.thread_time() - begun) / len(which)
     for seen in (True, False):
         name = "tiny_seen" if seen else "tiny_not_seen"
-        found[name] = on_dask(1, tiny, TINY, 16 * chunks, folder / f"{name}.zarr", seen)
+        found[name] = on_dask(1, tiny, TINY, 16 * most, folder / f"{name}.zarr", seen)
     for k in range(rounds):
         for workers in (1, 2):
-            one = on_dask(workers, made, _chunk(made), chunks, folder / f"w{workers}{k}.zarr", True)
+            store = folder / f"w{workers}{k}.zarr"
+            one = on_dask(workers, made, chunk_size(made), most, store, True)
             found.setdefault(f"workers_{workers}", []).append(one | {"load": load()})
-    one = on_dask(1, made, _chunk(made), max(2, chunks // 4), folder / "far.zarr", False)
+    one = on_dask(1, made, chunk_size(made), max(2, most // 4), folder / "far.zarr", False)
     found["far"] = one
     return found
 
@@ -366,7 +368,7 @@ def start(folder: Path, repeats: int = 7) -> dict[str, float]:
 # --------------------------------------------------------------------------- the table
 
 
-def _told(name: str, row: dict[str, Any]) -> str:
+def _line(name: str, row: dict[str, Any]) -> str:
     each = 1e6 / row["flights"]
     return (
         f"{name}: {row['flights']:,} flights, {row['mean_time']:.2f} s and {row['mean_steps']:.0f} "
@@ -448,9 +450,9 @@ def main() -> None:
     try:
         for part in parts:
             if part in ("lifetimes", "large"):
-                flights = options.flights if part == "lifetimes" else options.large
-                row = in_child(flights, folder / f"{part}.zarr", *more)
-                print(_told(part, row), flush=True)
+                count = options.flights if part == "lifetimes" else options.large
+                row = in_child(count, folder / f"{part}.zarr", *more)
+                print(_line(part, row), flush=True)
                 if part == "lifetimes":
                     row["one by one"] = one = one_by_one()
                     print(

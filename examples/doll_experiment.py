@@ -39,7 +39,7 @@ def thrown(arm, vary):
 
 def stable(launches):
     """The share of launches that did not end with a quarter twist, with its interval."""
-    return launches.fraction(launches.dataset["ended"] == so.ensembles.ENDINGS.index("duration"))
+    return launches.fraction(ended="duration")
 
 
 def main():

@@ -29,7 +29,8 @@ from scipy.optimize import differential_evolution
 import somersault as so
 from somersault.dynamics import Equations
 from somersault.engine import use_threads
-from somersault.ensembles._plan import Plan
+from somersault.ensembles import plan
+from somersault.flight import flights
 
 OUT = Path(__file__).parents[1] / "src/somersault/thesis/ch6/rudi.json"
 GENTLE = OUT.with_name("rudi_gentle.json")
@@ -261,10 +262,8 @@ def strained(n: Numbers, samples: int = FINE):
     )  # fmt: skip
     # An ensemble's own flights, without the description that goes with its dataset: that takes
     # several times as long as some dozens of flights.
-    plan = Plan(
-        equations().model, first, 1.0, vary, report, len(landing), 0, "random", 1e-5, None, 3000
-    )
-    data = plan.fly(0, len(landing))
+    many = flights(equations().model, first, 1.0, report=report, accuracy=1e-5, steps=3000)
+    data = plan(many, vary).run(0, len(landing))
     omega = np.stack([data[f"{name}_history"] for name in turning], -1)
     times = np.broadcast_to(np.linspace(0, 1, samples), omega.shape[:-1])
     peaks = np.abs(torques(scaled, times, omega)).max(1) / landing[:, None] ** 2
