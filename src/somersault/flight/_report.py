@@ -139,8 +139,8 @@ def check(report: Report, target: Mapping[str, float], model: Model) -> None:
             raise SomersaultError(f"{where} names the same thing twice; leave one out")
     if LANDING_ERROR in report.quantities and not target:
         raise SomersaultError(
-            "report.quantities has landing_error, which needs a target; give angles to land at, or a "
-            "flight to measure against"
+            "report.quantities has landing_error, which needs a target; give angles to land "
+            "at, or a flight to measure against"
         )
     if report.history and report.samples < 2:
         raise SomersaultError(
