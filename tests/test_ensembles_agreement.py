@@ -134,7 +134,7 @@ def test_attitude_and_the_rates_of_a_spin_and_several_targets() -> None:
 def test_components_of_angular_momentum_with_joints_that_turn() -> None:
     def joints(rate: float) -> dict[str, JointTakeoff]:
         return {
-            "left_shoulder": JointTakeoff("sprung", 0.8, rate, 25.0, rest=0.5),
+            "left_shoulder": JointTakeoff("sprung", 0.8, rate, stiffness=25.0, rest=0.5),
             "right_shoulder": JointTakeoff("free", -1.1),
         }
 
@@ -158,8 +158,9 @@ def test_damping_rest_rate_and_pretension_of_a_pair() -> None:
 
     def takeoff(v: Mapping[str, float]) -> Takeoff:
         joint = JointTakeoff(
-            "sprung", 1.0, v["rate"], 22.0, v["damping"], v["rest"], v["pretension"]
-        )
+            "sprung", 1.0, v["rate"], stiffness=22.0, damping=v["damping"], rest=v["rest"],
+            pretension=v["pretension"],
+        )  # fmt: skip
         return Takeoff(0.0, 0.05, 0.02, spin=7.0, joints={"shoulder": joint})
 
     nominal = {"rate": 0.1, "damping": 0.2, "rest": 0.9, "pretension": 1.0}

@@ -63,9 +63,7 @@ def _spelled(name: Name) -> str:
     return ".".join(str(part) for part in parts)
 
 
-def _of_joint(
-    batch: Batch, path: str, joint: str, what: str, k: str | None
-) -> tuple[Target, ...]:
+def _of_joint(batch: Batch, path: str, joint: str, what: str, k: str | None) -> tuple[Target, ...]:
     both, values = sides(batch.model, joint), batch.values
     does = {plan.joint.name: plan.does for plan in batch.joints}
     meant: list[Target] = []
