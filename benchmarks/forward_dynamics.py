@@ -16,6 +16,7 @@ from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
 
+import limits
 import machine
 import numpy as np
 import ours
@@ -28,18 +29,22 @@ from somersault.model import Model, load
 
 TARGETS = {"layout": 60.0, "gymnast": 30.0}
 OURS, MUJOCO = "kernel, all threads", "MuJoCo rollout RK4, all threads"
+PUBLIC = "Equations.forward_dynamics, 65,536 samples"
 
 
 def models() -> dict[str, Model]:
-    """The thesis's layout model, the gymnast, and gymnasium's humanoid if it is installed."""
-    found = {"layout": load("furrer"), "gymnast": gymnast()}
-    package = find_spec("gymnasium")
-    if package is not None and package.origin is not None:
-        path = Path(package.origin).parent / "envs/mujoco/assets/humanoid.xml"
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            found["humanoid"] = load(path)
-    return found
+    """The thesis's layout model, the gymnast, and humanoids of packages that are installed."""
+    every = {"layout": load("furrer"), "gymnast": gymnast()}
+    for name, package, path in (
+        ("humanoid", "gymnasium", "envs/mujoco/assets/humanoid.xml"),
+        ("dm_control", "dm_control", "suite/humanoid.xml"),
+    ):
+        found = find_spec(package)
+        if found is not None and found.origin is not None:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                every[name] = load(Path(found.origin).parent / path)
+    return every
 
 
 def measured(timers: dict[str, Callable[[], float]], rounds: int) -> dict[str, dict[str, float]]:
@@ -62,7 +67,7 @@ def benchmark(model: Model, rounds: int) -> dict:
     timers = {
         "kernel, 1 thread": ours.kernel_timer(whole.kernel, 1, sample),
         OURS: ours.kernel_timer(whole.kernel, threads, sample),
-        "Equations.forward_dynamics, 65,536 samples": ours.public_timer(equations, q, v),
+        PUBLIC: ours.public_timer(equations, q, v),
     }
     lean = ours.forward_dynamics(equations, attitude_only=True) if model.free else None
     if lean is not None:
@@ -76,9 +81,12 @@ def benchmark(model: Model, rounds: int) -> dict:
     timers[MUJOCO] = mujoco_timer(model, threads, check)
     timers |= pinocchio_timers(model, threads, check)
     timers["plain NumPy, batches of 4096"] = ours.numpy_timer(whole.function, sample)
-    peak = {"peak, 1 thread": ours.peak_timer(1), "peak, all threads": ours.peak_timer(threads)}
-    times = measured(timers | peak, rounds)
+    copying = {"copying, all threads": limits.copy_timer(threads)}
+    peak = {"peak, 1 thread": limits.peak_timer(1), "peak, all threads": limits.peak_timer(threads)}
+    times = measured(timers | peak | copying, rounds)
     peaks = {name: times.pop(name) for name in peak}
+    (byte,) = (times.pop(name) for name in copying)
+    moved = 8 * (len(q) + len(v) + equations.speeds)  # bytes of a sample, in and out
     result = {
         "speeds": equations.speeds,
         "instructions": whole.instructions,
@@ -90,6 +98,11 @@ def benchmark(model: Model, rounds: int) -> dict:
         "share_of_peak": {
             of: whole.operations * peaks[f"peak, {of}"]["min"] / times[f"kernel, {of}"]["min"]
             for of in ("1 thread", "all threads")
+        },
+        "public": {
+            "over_kernel": {which: times[PUBLIC][which] / times[OURS][which] for which in byte},
+            "bytes": moved,
+            "copying_ns": {which: moved * byte[which] for which in byte},
         },
         "ratio": {which: times[MUJOCO][which] / times[OURS][which] for which in ("min", "median")},
     }
@@ -116,6 +129,12 @@ def table(name: str, result: dict) -> str:
         f"  of the peak of {peak['peak, 1 thread']:.1f} Gflop/s: {share['1 thread']:.0%} on one "
         f"thread; of {peak['peak, all threads']:.1f}: {share['all threads']:.0%} on all"
     )
+    public, memory = result["public"], result["public"]["copying_ns"]
+    lines.append(
+        f"  public call / kernel, all threads: {public['over_kernel']['min']:.2f} by the least "
+        f"times, {public['over_kernel']['median']:.2f} by the medians; copying its "
+        f"{public['bytes']} bytes would take {memory['min']:.1f} ({memory['median']:.1f}) ns"
+    )
     ratio, target = result["ratio"], TARGETS.get(name)
     aim = "" if target is None else f" (aim: at least {target:.0f})"
     lines.append(
@@ -129,7 +148,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--rounds", type=int, default=15, help="measurements of each contender")
     parser.add_argument("--json", type=Path, help="write the numbers here as well")
-    parser.add_argument("--only", help="layout, gymnast or humanoid")
+    parser.add_argument("--only", help="layout, gymnast, humanoid or dm_control")
     options = parser.parse_args()
     before = machine.load()
     report: dict = {"threads": threads_here(), "load_before": before, "models": {}}

@@ -1,4 +1,4 @@
-"""Our side of the comparison: kernels, their operations, plain NumPy, and the machine's peak."""
+"""Our side of the comparison: kernels, their operations, and plain NumPy."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from functools import cache
 
 import casadi as ca
 import numpy as np
+from limits import aligned
 
 from somersault.dynamics import Equations
 from somersault.engine import LANES, Kernel, compiled
-from somersault.engine._kernel import aligned
 
 _COUNTED = (ca.OP_ADD, ca.OP_SUB, ca.OP_MUL, ca.OP_SQ, ca.OP_TWICE, ca.OP_DIV, ca.OP_INV)
 _SINE_AND_COSINE = 38  # operations of one reduction and both polynomials, a multiply-add as two
@@ -82,11 +82,15 @@ def kernel_timer(kernel: Kernel, threads: int, sample: np.ndarray) -> Callable[[
         x[...] = sample[:, None] + 0.1 * rng.normal(size=x.shape)
         chunks.append((x, out))
     pool = ThreadPoolExecutor(threads)
-    run, rounds = kernel._run, 400
+    address = _blocks_engine().get_function_address("blocks")
+    pointer, integer = ctypes.c_void_p, ctypes.c_int64
+    run = ctypes.CFUNCTYPE(None, pointer, pointer, pointer, integer, integer, integer)(address)
+    rounds, strides = 400, (kernel.inputs * LANES, kernel.outputs * LANES)
 
     def work(chunk: tuple[np.ndarray, np.ndarray]) -> None:
+        x, out = chunk
         for _ in range(rounds):
-            run(*chunk)
+            run(kernel.address, x.ctypes.data, out.ctypes.data, *strides, BLOCKS)
 
     def measure() -> float:
         start = time.perf_counter()
@@ -95,6 +99,29 @@ def kernel_timer(kernel: Kernel, threads: int, sample: np.ndarray) -> Callable[[
 
     measure()
     return measure
+
+
+@cache
+def _blocks_engine():
+    """A loop that calls a kernel for one block of lanes after another."""
+    return compiled("""
+define void @blocks(ptr %kernel, ptr %x, ptr %y, i64 %xby, i64 %yby, i64 %n) {
+entry:
+  br label %loop
+loop:
+  %i = phi i64 [ 0, %entry ], [ %next, %loop ]
+  %xo = mul i64 %i, %xby
+  %yo = mul i64 %i, %yby
+  %xp = getelementptr double, ptr %x, i64 %xo
+  %yp = getelementptr double, ptr %y, i64 %yo
+  call void %kernel(ptr %xp, ptr %yp)
+  %next = add i64 %i, 1
+  %more = icmp slt i64 %next, %n
+  br i1 %more, label %loop, label %done
+done:
+  ret void
+}
+""")
 
 
 def public_timer(equations: Equations, q: np.ndarray, v: np.ndarray) -> Callable[[], float]:
@@ -174,71 +201,3 @@ def _program(f: ca.Function) -> Callable[[np.ndarray], np.ndarray]:
         return out
 
     return run
-
-
-# ------------------------------------------------------------------------ the machine's peak
-
-_CHAINS = 12  # independent multiply-adds in flight, more than any core's latency × width
-_TIMES = 2_000_000
-
-
-@cache
-def _peak_engine():
-    vector = f"<{LANES} x double>"
-    near_one = "<" + ", ".join(["double 0x3FEFFFFFFFFFFFFE"] * LANES) + ">"
-    lines = [
-        f"  %a{k} = phi {vector} [ zeroinitializer, %entry ], [ %b{k}, %loop ]"
-        for k in range(_CHAINS)
-    ]
-    lines += [
-        f"  %b{k} = call {vector} @llvm.fma.v{LANES}f64({vector} %a{k}, {vector} {near_one}, "
-        f"{vector} %x{k})"
-        for k in range(_CHAINS)
-    ]
-    total = [f"  %s0 = fadd {vector} %b0, %b0"]
-    total += [f"  %s{k} = fadd {vector} %s{k - 1}, %b{k}" for k in range(1, _CHAINS)]
-    loads = [
-        f"  %p{k} = getelementptr double, ptr %x, i64 {LANES * (k % 2)}\n"
-        f"  %x{k} = load {vector}, ptr %p{k}, align 64"
-        for k in range(_CHAINS)
-    ]
-    newline = "\n"
-    return compiled(f"""
-declare {vector} @llvm.fma.v{LANES}f64({vector}, {vector}, {vector})
-define void @peak(ptr %x, ptr %y, i64 %n) #0 {{
-entry:
-{newline.join(loads)}
-  br label %loop
-loop:
-  %i = phi i64 [ 0, %entry ], [ %next, %loop ]
-{newline.join(lines)}
-  %next = add i64 %i, 1
-  %more = icmp slt i64 %next, %n
-  br i1 %more, label %loop, label %done
-done:
-{newline.join(total)}
-  store {vector} %s{_CHAINS - 1}, ptr %y, align 64
-  ret void
-}}
-attributes #0 = {{ nounwind "min-legal-vector-width"="512" "prefer-vector-width"="512" }}
-""")
-
-
-def peak_timer(threads: int) -> Callable[[], float]:
-    """Seconds a floating-point operation in nothing but fused multiply-adds, two each."""
-    address = _peak_engine().get_function_address("peak")
-    call = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)(address)
-    rows = [aligned((2, LANES)) for _ in range(threads)]
-    outs = [aligned((1, LANES)) for _ in range(threads)]
-    for row in rows:
-        row[...] = 1e-3
-    pool = ThreadPoolExecutor(threads)
-
-    def measure() -> float:
-        start = time.perf_counter()
-        pairs = zip(rows, outs, strict=True)
-        list(pool.map(lambda a: call(a[0].ctypes.data, a[1].ctypes.data, _TIMES), pairs))
-        return (time.perf_counter() - start) / (threads * _TIMES * _CHAINS * LANES * 2)
-
-    measure()
-    return measure

@@ -10,6 +10,8 @@ from somersault.dynamics import Equations
 from somersault.engine import Kernel, _kernel, use_threads
 from somersault.model import load
 
+rng = np.random.default_rng(7)
+
 
 def both(expression, *symbols, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Compiled and interpreted values, one row for each row of `at`."""
@@ -159,6 +161,53 @@ def test_leading_dimensions_are_kept(furrer: Kernel, samples: np.ndarray) -> Non
     assert furrer(samples[:0]).shape == (0, furrer.outputs)
 
 
+@pytest.mark.parametrize("width", range(10))
+@pytest.mark.parametrize("count", [1, 7, 8, 9, 17])
+def test_rows_of_any_width_come_back(width: int, count: int) -> None:
+    """x and y as they are, whose rows are turned into lanes and back in groups of four."""
+    x, y = ca.SX.sym("x", width), ca.SX.sym("y", 2)
+    kernel = Kernel(ca.Function("f", [x, y], [ca.vertcat(x, y, y[0] * x)]))
+    a, b = rng.normal(size=(count, width)), rng.normal(size=(count, 2))
+    np.testing.assert_array_equal(kernel(a, b), np.concatenate([a, b, b[:, :1] * a], 1))
+    np.testing.assert_array_equal(kernel(a, b[0])[:, width], np.full(count, b[0, 0]))
+    np.testing.assert_array_equal(kernel(a[:1], b)[:, :width], np.tile(a[0], (count, 1)))
+
+
+def difference() -> Kernel:
+    x, y = ca.SX.sym("x", 5), ca.SX.sym("y", 5)
+    return Kernel(ca.Function("f", [x, y], [x - y]))
+
+
+def test_leading_dimensions_broadcast() -> None:
+    a, b = rng.normal(size=(3, 1, 40, 5)), rng.normal(size=(7, 1, 5))
+    np.testing.assert_array_equal(difference()(a, b), a - b)
+    np.testing.assert_array_equal(difference()(a[0, 0, 0], b[0, 0]), a[0, 0, 0] - b[0, 0])
+    assert difference()(a[:, :, :0], b).shape == (3, 7, 0, 5)
+    with pytest.raises(ValueError, match="broadcast"):
+        difference()(a[0, 0], b[:, 0])
+
+
+def test_arguments_may_lie_in_memory_in_any_way() -> None:
+    a, b = rng.normal(size=(300, 12)), rng.normal(size=(300, 5))
+    packed = np.zeros(300, [("first", "i1"), ("x", "f8", 5)])
+    packed["x"] = b
+    for x in (a[:, :5], a[:, ::-1][:, :5], a[::-1, 3:8], a[:, ::2][:, :5], np.asfortranarray(b)):
+        np.testing.assert_array_equal(difference()(x, b), x - b)
+    for y in (packed["x"], b.astype(">f8"), b.astype("f4"), np.rint(b).astype(int), b.tolist()):
+        np.testing.assert_array_equal(difference()(a[:, :5], y), a[:, :5] - np.asarray(y, float))
+
+
+def test_all_arguments_side_by_side() -> None:
+    a = rng.normal(size=(20, 10))
+    np.testing.assert_array_equal(difference()(a), a[:, :5] - a[:, 5:])
+
+
+@pytest.mark.parametrize("shapes", [[(5,), (4,)], [(9,)], [(5,)], [(5,), (5,), (5,)], [(5,), ()]])
+def test_arguments_of_other_widths_are_refused(shapes: list[tuple[int, ...]]) -> None:
+    with pytest.raises(ValueError, match=r"arguments of widths \(5, 5\)"):
+        difference()(*(np.zeros(shape) for shape in shapes))
+
+
 def test_arguments_are_left_as_they_were(furrer: Kernel, samples: np.ndarray) -> None:
     before = samples.copy()
     furrer(samples)
@@ -168,5 +217,6 @@ def test_arguments_are_left_as_they_were(furrer: Kernel, samples: np.ndarray) ->
 
 
 def test_forward_dynamics_are_casadis(furrer: Kernel, samples: np.ndarray) -> None:
-    theirs = np.array(furrer._function.map(200)(samples[:200].T)).T
+    separate = np.split(samples[:200], np.cumsum(furrer.widths)[:-1], axis=1)
+    theirs = np.array(furrer._function.map(200)(*(part.T for part in separate))).T
     np.testing.assert_allclose(furrer(samples[:200]), theirs, rtol=1e-11, atol=1e-11)

@@ -158,11 +158,11 @@ class Equations:
         return Expression(f"{name}_by_{argument}", expression.arguments, value)
 
     def kernel(self, expression: Expression) -> Kernel:
-        """Compiled form, of all arguments joined into one vector; the value raveled by rows."""
+        """Compiled form, of all arguments; it gives the value raveled by rows."""
         if expression not in self._kernels:
-            joined = ca.vertcat(*expression.arguments.values())
+            arguments = list(expression.arguments.values())
             flat = ca.cse(ca.densify(ca.vec(expression.value.T)))
-            self._kernels[expression] = Kernel(ca.Function(expression.name, [joined], [flat]))
+            self._kernels[expression] = Kernel(ca.Function(expression.name, arguments, [flat]))
         return self._kernels[expression]
 
     def evaluate(self, expression: Expression, **arguments: ArrayLike) -> Array:
@@ -173,21 +173,21 @@ class Equations:
                     f"{expression.name} takes {', '.join(expression.arguments)}, and not {name}"
                 )
         arguments.setdefault("parameters", self.values)
+        kernel = self.kernel(expression)
         arrays = []
-        for name, symbol in expression.arguments.items():
+        for name, width in zip(expression.arguments, kernel.widths, strict=True):
             try:
-                array = np.asarray(arguments.get(name, np.zeros(symbol.numel())), float)
+                array = np.asarray(arguments.get(name, np.zeros(width)), float)
             except (TypeError, ValueError):
                 raise SomersaultError(f"{expression.name}: {name} must be numbers") from None
-            if array.shape[-1:] != (symbol.numel(),):
+            if array.shape[-1:] != (width,):
                 raise SomersaultError(
                     f"{expression.name}: {name} has shape {array.shape}, but its last dimension "
-                    f"must be {symbol.numel()}"
+                    f"must be {width}"
                 )
             arrays.append(array)
-        lead = np.broadcast_shapes(*(a.shape[:-1] for a in arrays))
-        joined = np.concatenate([np.broadcast_to(a, (*lead, a.shape[-1])) for a in arrays], -1)
-        return self.kernel(expression)(joined).reshape(*lead, *expression.value.shape)
+        values = kernel(*arrays)
+        return values.reshape(*values.shape[:-1], *expression.value.shape)
 
     # ------------------------------------------------------------------------- methods
 

@@ -5,39 +5,62 @@ from __future__ import annotations
 import ctypes
 import math
 from functools import cached_property
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 import casadi as ca
 import numpy as np
+from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
 from somersault.engine._expression import expression
-from somersault.engine._flow import INTEGER, POINTER, Code, integer
 from somersault.engine._machine import compiled
+from somersault.engine._samples import samples
 from somersault.engine._threads import pool, threads
 from somersault.engine._vectors import LANES, module
 
-_ALIGN = 64  # bytes, the width of a block row
 _WORTH_A_THREAD = 256  # blocks below which a second thread costs more than it gives
+_NUMBER = 8  # bytes
 
 
 class Kernel:
-    """A function of one vector as machine code, eight samples to a call.
+    """A function of vectors as machine code, eight samples at a time on all threads.
 
-    Built from a CasADi function with one dense vector in and one out. Holds the code for as
-    long as it lives. Results do not depend on how many samples are asked at once, nor on the
-    number of threads: every lane does the same operations in the same order.
+    A result does not depend on how many samples are asked with it, nor on the number of threads:
+    every lane does the same operations in the same order. The code is compiled at the first call,
+    and lives as long as the kernel.
+
+    Parameters
+    ----------
+    function
+        A CasADi function that takes dense vectors and gives one.
+
+    Attributes
+    ----------
+    widths : tuple of int
+        How many numbers each argument has.
+    inputs, outputs : int
+        How many numbers all arguments have together, and the result.
+
+    Examples
+    --------
+    >>> import casadi as ca
+    >>> x, y = ca.SX.sym("x", 2), ca.SX.sym("y")
+    >>> kernel = Kernel(ca.Function("f", [x, y], [x[0] * y + x[1]]))
+    >>> kernel([[1.0, 2.0], [3.0, 4.0]], [10.0])
+    array([[12.],
+           [34.]])
     """
 
     def __init__(self, function: ca.Function) -> None:
-        self.inputs: int = function.nnz_in(0)
+        self.widths = tuple(function.nnz_in(k) for k in range(function.n_in()))
+        self.inputs: int = sum(self.widths)
         self.outputs: int = function.nnz_out(0)
         self._function = function
 
     @cached_property
     def _compiled(self):  # the engine must outlive the addresses taken from it
-        many = _many(self.inputs, self.outputs)
-        return compiled(many, module([expression(self._function, "kernel")]))
+        kernel = module([expression(self._function, "kernel")])
+        return compiled(samples(self.widths, self.outputs), kernel)
 
     @cached_property
     def address(self) -> int:
@@ -45,72 +68,75 @@ class Kernel:
         return self._compiled.get_function_address("kernel")
 
     @cached_property
-    def _many(self):
-        address = self._compiled.get_function_address("kernel_many")
-        return ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)(address)
+    def _samples(self):
+        address = self._compiled.get_function_address("samples")
+        pointers, integers = [ctypes.c_void_p] * 3, [ctypes.c_int64] * 3
+        return ctypes.CFUNCTYPE(None, *pointers, *integers)(address)
 
-    def __call__(self, x: Array) -> Array:
-        """The function at each sample: x (…, inputs) gives (…, outputs)."""
-        x = np.asarray(x, float)
-        count = math.prod(x.shape[:-1])
-        if count == 0:
-            return np.empty((*x.shape[:-1], self.outputs))
-        flat = x.reshape(count, self.inputs)
-        result = unpacked(self.blocks(packed(flat)), count)
-        return result.reshape(*x.shape[:-1], self.outputs)
+    def __call__(self, *arguments: ArrayLike) -> Array:
+        """The function at each sample.
 
-    def blocks(self, x: Array, out: Array | None = None) -> Array:
-        """The same without repacking: x (blocks, inputs, 8), from `aligned`, gives
-        (blocks, outputs, 8)."""
-        if out is None:
-            out = aligned((len(x), self.outputs, LANES))
-        workers = threads() if len(x) >= _WORTH_A_THREAD else 1
-        edges = np.linspace(0, len(x), workers + 1).astype(int)
-        parts = [(x[a:b], out[a:b]) for a, b in pairwise(edges)]
-        if workers == 1:
-            self._run(*parts[0])
-        else:
-            list(pool().map(lambda part: self._run(*part), parts))
+        Parameters
+        ----------
+        *arguments
+            Arrays (…, width), one for each argument; or one array (…, inputs) that has all of them
+            side by side. Leading dimensions broadcast, without copies where an argument is the
+            same for all samples.
+
+        Returns
+        -------
+        array
+            (…, outputs).
+
+        Raises
+        ------
+        ValueError
+            For arrays that are not as wide as the arguments.
+        """
+        arrays = self._separate([np.asarray(argument, float) for argument in arguments])
+        lead = np.broadcast_shapes(*(a.shape[:-1] for a in arrays))
+        count = math.prod(lead)
+        out = np.empty((*lead, self.outputs))
+        if out.size:
+            self._run([_rows(a, lead, count) for a in arrays], out, count)
         return out
 
-    def _run(self, x: Array, out: Array) -> None:
-        self._many(x.ctypes.data, out.ctypes.data, len(x))
+    def _separate(self, arrays: list[Array]) -> list[Array]:
+        """One array for each argument."""
+        if len(arrays) == 1 < len(self.widths) and arrays[0].shape[-1:] == (self.inputs,):
+            edges = accumulate(self.widths, initial=0)
+            return [arrays[0][..., a:b] for a, b in pairwise(edges)]
+        if [a.shape[-1:] for a in arrays] != [(width,) for width in self.widths]:
+            shapes = ", ".join(str(a.shape) for a in arrays)
+            raise ValueError(f"arguments of widths {self.widths} cannot be of shape {shapes}")
+        return arrays
+
+    def _run(self, rows: list[tuple[Array, int]], out: Array, count: int) -> None:
+        addresses = (ctypes.c_void_p * len(rows))(*(a.ctypes.data for a, _ in rows))
+        strides = (ctypes.c_int64 * len(rows))(*(stride for _, stride in rows))
+        blocks = -(-count // LANES)
+        workers = threads() if blocks >= _WORTH_A_THREAD else 1
+        edges = [blocks * k // workers for k in range(workers + 1)]
+
+        def work(first: int, end: int) -> None:
+            self._samples(addresses, strides, out.ctypes.data, count, first, end)
+
+        if workers == 1:
+            work(0, blocks)
+        else:
+            list(pool().map(work, edges[:-1], edges[1:]))
 
 
-def packed(rows: Array) -> Array:
-    """Rows (N, m) as blocks of lanes (B, m, 8), the last row repeated to fill."""
-    count, width = rows.shape
-    full = count // LANES
-    result = aligned((-(-count // LANES), width, LANES))
-    result[:full] = rows[: full * LANES].reshape(full, LANES, width).swapaxes(1, 2)
-    if len(result) > full:
-        last = rows[full * LANES :].T
-        result[full, :, : last.shape[1]] = last
-        result[full, :, last.shape[1] :] = last[:, -1:]
-    return result
-
-
-def unpacked(blocks: Array, count: int) -> Array:
-    """The first `count` rows (N, m) of blocks of lanes (B, m, 8)."""
-    return blocks.swapaxes(1, 2).reshape(-1, blocks.shape[1])[:count]
-
-
-def aligned(shape: tuple[int, ...]) -> Array:
-    """An empty array whose data start on a 64-byte boundary, as the vector loads need."""
-    count = math.prod(shape)
-    raw = np.empty(count + _ALIGN // 8)
-    start = (-raw.ctypes.data % _ALIGN) // 8
-    return raw[start : start + count].reshape(shape)
-
-
-def _many(inputs: int, outputs: int) -> str:
-    """LLVM text of kernel_many(x, y, blocks), which calls @kernel for one block after another."""
-    code = Code()
-    kernel = code.declared("kernel", [POINTER, POINTER])
-    flow, (x, y, blocks) = code.written("kernel_many", [POINTER, POINTER, INTEGER])
-    with flow.counted(integer(0), blocks) as block:
-        x_block = flow.place(x, flow.mul(block, integer(inputs * LANES)))
-        y_block = flow.place(y, flow.mul(block, integer(outputs * LANES)))
-        flow.call(kernel, [x_block, y_block])
-    flow.ret_void()
-    return str(code)
+def _rows(array: Array, lead: tuple[int, ...], count: int) -> tuple[Array, int]:
+    """An argument as rows of numbers that are side by side, and how far one row is from the next:
+    0 where all samples have the same. What cannot be read as it is, is copied."""
+    width = array.shape[-1]
+    if array.size == width:
+        return np.ascontiguousarray(array), 0
+    if array.shape[:-1] != lead:
+        array = np.broadcast_to(array, (*lead, width))
+    rows = array.reshape(count, width)
+    by_row, by_number = rows.strides
+    if by_number != _NUMBER or by_row % _NUMBER or not rows.flags.aligned:
+        rows = np.ascontiguousarray(rows)
+    return rows, rows.strides[0] // _NUMBER
