@@ -77,7 +77,7 @@ def test_damping_destroys_what_is_gyroscopic_and_only_that(number: int) -> None:
         if system.energy_signature == "definite":
             assert negative == 0
             assert system.stable
-            assert damped.growth_rate <= GROWS
+            assert damped.stable
         elif system.energy_signature == "gyroscopic":
             assert negative > 0
             assert negative % 2 == 0

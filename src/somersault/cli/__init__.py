@@ -7,9 +7,10 @@ standard error and exit code 2.
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NoReturn, TextIO
 
 from somersault._core.errors import SomersaultError, SomersaultWarning
@@ -22,8 +23,32 @@ class _Parser(argparse.ArgumentParser):
     """argparse, but a mistake is one sentence without the usage in front."""
 
     def error(self, message: str) -> NoReturn:
+        needed = re.match(r"the following arguments are required: ([A-Z].*)", message)
+        if needed:
+            in_front = "; write it in front of the options" if " " in self.prog else ""
+            message = f"{needed[1]} is missing{in_front}"
         sys.stderr.write(f"{self.prog}: {message}; see {self.prog} --help\n")
         raise SystemExit(2)
+
+
+class _Help(argparse.RawDescriptionHelpFormatter):
+    """Help whose usage line has what must be given in front of the options: one that takes several
+    values would swallow what stands behind it."""
+
+    def add_usage(
+        self,
+        usage: str | None,
+        actions: Iterable[argparse.Action],
+        groups: Iterable[argparse._MutuallyExclusiveGroup],
+        prefix: str | None = None,
+    ) -> None:
+        """The usage line of a command."""
+        names = [
+            self._format_args(action, self._get_default_metavar_for_positional(action))
+            for action in actions
+            if not action.option_strings
+        ]
+        super().add_usage(" ".join(["%(prog)s", *names, "[options]"]), actions, groups, prefix)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -44,7 +69,7 @@ def _parser() -> argparse.ArgumentParser:
             help=command.HELP,
             description=command.HELP,
             epilog=command.EXAMPLES,
-            formatter_class=argparse.RawDescriptionHelpFormatter,
+            formatter_class=_Help,
         )
         command.add_arguments(added)
         added.set_defaults(run=command.run)

@@ -109,11 +109,21 @@ def _record(system: LinearSpin, axis: str) -> dict[str, Any]:
 
 
 _WHY = {
-    "definite": "its energy is an extremum among motions of the same angular momentum",
-    "gyroscopic": "only gyroscopic coupling holds it, so damping would destroy it",
-    "neutral": "some deviation leaves its energy as it is, so nothing restores that",
-    "unstable": "neither its energy nor gyroscopic coupling holds it",
+    "definite": "it is an extremum among motions of the same angular momentum",
+    "gyroscopic": "only gyroscopic coupling holds the spin, so damping would destroy it",
+    "neutral": "some deviation leaves it as it is, so nothing restores that",
+    "unstable": "neither a minimum of energy nor gyroscopic coupling holds the spin",
 }
+_DAMPED = {
+    True: "only gyroscopic coupling holds the spin; its dampers do not act on what it holds",
+    False: "gyroscopic coupling alone would hold the spin, and its dampers destroy it",
+}
+
+
+def _why(system: LinearSpin) -> str:
+    if system.energy_signature == "gyroscopic" and system.D.any():
+        return _DAMPED[system.stable]
+    return _WHY[system.energy_signature]
 
 
 def _page(system: LinearSpin, axis: str) -> list[str]:
@@ -122,8 +132,8 @@ def _page(system: LinearSpin, axis: str) -> list[str]:
     verdict = "stable" if system.stable else "unstable"
     lines = [
         f"{steady.model.name}, spinning about its {_axis(axis, steady.axis)}: {verdict}",
-        f"  grows × {system.growth_per_somersault:.4g} in a turn",
-        f"  energy: {system.energy_signature}, {_WHY[system.energy_signature]}",
+        f"  {system.growth_in_words}",
+        f"  energy: {system.energy_signature}, {_why(system)}",
         f"  principal inertias {_numbers(steady.principal_inertias.tolist())} kg m²,"
         f" k1 {ratios['k1']:.3f}, k3 {ratios['k3']:.3f}",
     ]
@@ -134,8 +144,9 @@ def _page(system: LinearSpin, axis: str) -> list[str]:
     width = min(48, max(len(mode.name) for mode in system.modes))
     sign = {1: "positive energy", -1: "negative energy", 0: ""}
     for mode in system.modes:
-        real, imaginary = (round(x, 4) + 0.0 for x in (mode.root.real, mode.root.imag))
-        root = f"{real:+.4f}" + (f" ± {imaginary:.4f} i" if imaginary else "")
+        real, imaginary = mode.root.real + 0.0, round(mode.root.imag, 4)
+        root = f"{real:+.4f}" if real == 0 or abs(real) >= 5e-5 else f"{real:+.0e}"
+        root += f" ± {imaginary:.4f} i" if imaginary else ""
         lines.append(f"    {mode.name:<{width}}  {root}  {sign[mode.energy]}".rstrip())
     return lines
 

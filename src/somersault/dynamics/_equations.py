@@ -100,6 +100,11 @@ class Equations:
     def _p(self) -> Any:
         return ca.SX.sym("p", len(self.parameters))
 
+    @property
+    def open_parameters(self) -> Any:
+        """The symbols of `parameters`, (parameters,), for expressions of one's own."""
+        return self._p
+
     @cached_property
     def _symbols(self) -> dict[str, Any]:
         return {name: self._p[k] for k, name in enumerate(self.parameters)}

@@ -16,10 +16,8 @@ from somersault.flight._flight import Flight
 from somersault.flight._fly import fly
 from somersault.flight._takeoff import Takeoff
 from somersault.flight.behaviours import Free, JointTakeoff, Locked, Sprung
-from somersault.model import Joint
-from somersault.model._pose import pose, spread
-from somersault.stability import Spin
-from somersault.stability._linear import locked_speeds
+from somersault.model import Joint, pose, spread
+from somersault.stability import Spin, locked_speeds
 
 
 def deviated_flight(

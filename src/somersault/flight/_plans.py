@@ -20,7 +20,7 @@ from somersault.flight.behaviours import (
     check_coupled,
 )
 from somersault.model import Joint, Model, sides
-from somersault.stability._spin import holding
+from somersault.stability import holding_torques
 
 
 def plans(model: Model, takeoff: Takeoff) -> tuple[JointPlan, ...]:
@@ -121,5 +121,5 @@ def _spin_rate(model: Model, takeoff: Takeoff, q: Array, u: Array) -> float:
     else:
         omega = np.zeros(3) if takeoff.angular_velocity is None else takeoff.angular_velocity
         h = Equations(model).momentum(q, np.concatenate([omega, np.zeros(3), u]))[:3]
-    inertia, _ = holding(model, q[None], (), np.empty((1, 0)), compiled=False)
+    inertia, _ = holding_torques(model, q[None], (), np.empty((1, 0)), compiled=False)
     return float(np.linalg.norm(h) / inertia[0])

@@ -19,8 +19,7 @@ from somersault.attitude import (
     side,
 )
 from somersault.flight._flight import Flight
-from somersault.stability._spin import Principal as PrincipalAxes
-from somersault.stability._spin import principal as principal_axes
+from somersault.stability import PrincipalAxes, principal_axes
 
 
 def principal_axes_along(flight: Flight) -> PrincipalAxes:

@@ -19,7 +19,7 @@ from somersault.flight._system import System
 from somersault.flight._takeoff import Takeoff
 from somersault.flight._values import Name, Values
 from somersault.flight.behaviours import JointPlan, Sprung, begin, side_by_side
-from somersault.stability._spin import holding
+from somersault.stability import holding_torques
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,13 +145,15 @@ def _pretensioned(
     if any(isinstance(values[k], np.ndarray) for k in shaped):
         both = np.concatenate([q, bodies], 1)
         fresh = np.append(True, np.any(both[1:] != both[:-1], 1))  # many in a row may be alike
-        inertia, torques = holding(
+        inertia, torques = holding_torques(
             system.model, q[fresh], system.bodies, bodies[fresh], compiled=True
         )
         same = np.cumsum(fresh) - 1
         inertia, torques = inertia[same], torques[same]
     else:  # all in one pose
-        inertia, torques = holding(system.model, q[:1], system.bodies, bodies[:1], compiled=False)
+        inertia, torques = holding_torques(
+            system.model, q[:1], system.bodies, bodies[:1], compiled=False
+        )
     if takeoff.spin is not None:
         rate = np.asarray(values["takeoff", "spin"])
     else:

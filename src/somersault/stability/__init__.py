@@ -1,18 +1,32 @@
 """Steady spins and small deviations from them: which are stable, and which springs help."""
 
-from somersault.stability._chart import chart, growth_rates, root_locus, stable_ranges
-from somersault.stability._linear import LinearSpin
+from somersault.stability._chart import (
+    chart,
+    growth_rates,
+    root_locus,
+    stable_ranges,
+    stable_ranges_by_case,
+)
+from somersault.stability._coordinates import locked_speeds
 from somersault.stability._modes import Mode
-from somersault.stability._spin import Spin, principal_inertias, spin
+from somersault.stability._principal import PrincipalAxes, principal_axes
+from somersault.stability._spin import principal_inertias, spin
+from somersault.stability._steady import holding_torques
+from somersault.stability._types import LinearSpin, Spin
 
 __all__ = [
     "LinearSpin",
     "Mode",
+    "PrincipalAxes",
     "Spin",
     "chart",
     "growth_rates",
+    "holding_torques",
+    "locked_speeds",
+    "principal_axes",
     "principal_inertias",
     "root_locus",
     "spin",
     "stable_ranges",
+    "stable_ranges_by_case",
 ]

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,210 +11,69 @@ from numpy.typing import ArrayLike
 from somersault._core.array import Array
 from somersault._core.checks import by_name, truth, whole_number
 from somersault._core.errors import SomersaultError
-from somersault.model import Model, load
-from somersault.model._pose import pose as posed
-from somersault.model._pose import spread
-from somersault.stability import _gyric
-from somersault.stability._coordinates import coordinates
-from somersault.stability._gyric import TOLERANCE, Attitude
-from somersault.stability._linear import coupled, locked_speeds, part_of
-from somersault.stability._spin import (
-    Axis,
-    axis_index,
-    composite_inertia,
-    evaluated,
-    or_somersault,
-    principal,
-    require_free,
-    require_inertia,
-)
+from somersault.model import Model
+from somersault.stability._grid import Grid, Values, grid, row, unit
+from somersault.stability._growth import definite, growth_rate
+from somersault.stability._principal import Axis
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Values = Mapping[str, ArrayLike]
-_JOINT_KINDS = ("pose", "stiffness", "damping")
 _MOST_SAMPLES = 1_000_000
-_BODY_KINDS = ("mass", "com", "position", "inertia")
-
-
-@dataclass(frozen=True)
-class _System:
-    """M, C = G + D and K + K′ over named coordinates, for a broadcast grid of cases."""
-
-    names: tuple[str, ...]
-    mass: Array
-    rate: Array
-    stiffness: Array
-    attitude: Attitude
-
-    def parts(self, subsystem: str | None) -> list[_System]:
-        """The decoupled parts, or only the one with a coordinate."""
-        near = coupled(self.mass, self.rate, self.stiffness)
-        groups = _gyric.blocks(_gyric.together(near, self.attitude))
-        if subsystem is not None:
-            if not isinstance(subsystem, str) or subsystem not in self.names:
-                raise SomersaultError(
-                    f"there is no coordinate {subsystem!r}; there are {', '.join(self.names)}"
-                )
-            place = self.names.index(subsystem)
-            groups = [group for group in groups if place in group]
-        return [self._part(group) for group in groups]
-
-    def _part(self, keep: list[int]) -> _System:
-        def cut(a: Array) -> Array:
-            return a[..., keep, :][..., keep]
-
-        return _System(
-            tuple(self.names[i] for i in keep),
-            cut(self.mass),
-            cut(self.rate),
-            cut(self.stiffness),
-            part_of(self.attitude, keep),
-        )
-
-
-def _system(
-    model: Model, axis: Axis | str | int, quantities: Values, lock: Iterable[str]
-) -> _System:
-    """The linear systems for arrays of quantities, which broadcast against each other."""
-    kinds = _sorted_kinds(model, quantities)
-    q = posed(model, kinds["pose"])
-    names = tuple(kinds["body"])
-    values = _stacked([np.asarray(v, float) for v in kinds["body"].values()])
-    about = principal(composite_inertia(model, q, names, values))
-    require_inertia(model, about.inertias)
-    index = _one_axis(model, about, axis)
-    turned = evaluated(model, q, about.axes[..., index], names, values)
-    _require_definite(model, turned.mass)
-    chosen = coordinates(model, index + 1, locked_speeds(model, lock))
-    mass, gyric, own = (chosen.transformed(a) for a in turned.in_axes(about.axes))
-    springs = _joint_terms(model, kinds["stiffness"], turned.outboard, chosen.columns)
-    dampers = _joint_terms(model, kinds["damping"], turned.outboard, chosen.columns)
-    return _System(chosen.names, mass, gyric + dampers, own + springs, chosen.attitude)
-
-
-def _require_definite(model: Model, mass: Array) -> None:
-    """Refuse bodies that no masses make: their kinetic energy could be negative."""
-    try:
-        np.linalg.cholesky(mass)
-    except np.linalg.LinAlgError:
-        raise SomersaultError(
-            f"somewhere in this chart {model.name} is no body, as its mass matrix is not positive; "
-            "narrow the values"
-        ) from None
-
-
-def _sorted_kinds(model: Model, quantities: Values) -> dict[str, dict[str, ArrayLike]]:
-    kinds: dict[str, dict[str, ArrayLike]] = {k: {} for k in (*_JOINT_KINDS, "body")}
-    for name, value in quantities.items():
-        kind, _, rest = name.partition(".")
-        if kind in _JOINT_KINDS and rest:
-            kinds[kind][rest] = value
-        elif kind in _BODY_KINDS and rest:
-            kinds["body"][name] = value
-        else:
-            raise SomersaultError(
-                f"{name!r} is no quantity of {model.name}; use pose.JOINT, stiffness.JOINT, "
-                "damping.JOINT, mass.BODY, com.BODY.1, position.BODY.1 or inertia.BODY.11"
-            )
-        try:
-            numbers = np.asarray(value, float)
-        except (TypeError, ValueError):
-            numbers = np.array(np.nan)
-        if not np.all(np.isfinite(numbers)):
-            raise SomersaultError(f"{name} has values that are not finite; give finite numbers")
-        least = {"mass": 1e-300, "damping": 0.0}.get(kind, -np.inf)
-        if np.any(numbers < least):
-            raise SomersaultError(f"{name} goes down to {numbers.min():g}; it must be positive")
-    return kinds
-
-
-def _stacked(values: Sequence[Array]) -> Array:
-    return np.stack(np.broadcast_arrays(*values), -1) if values else np.zeros(0)
-
-
-def _one_axis(model: Model, about: Any, axis: Axis | str | int) -> int:
-    if str(axis) in ("1", "2", "3"):
-        return int(axis) - 1
-    flat = about.inertias.reshape(-1, 3)
-    found = {axis_index(type(about)(row, about.axes), axis) for row in flat}
-    if len(found) > 1:
-        raise SomersaultError(
-            f"the {axis} axis of {model.name} is not the same one everywhere in this chart; give "
-            "axis 1, 2 or 3"
-        )
-    return found.pop()
-
-
-def _joint_terms(
-    model: Model, values: Mapping[str, ArrayLike], outboard: Array, columns: Array
-) -> Array:
-    """Spring or damper matrices in the chosen coordinates, (…, n, n), from k/(Ω² I)."""
-    total: Array = np.zeros((columns.shape[1], columns.shape[1]))
-    for name, value in spread(model, values, mirrored=False).items():
-        own = model.speed_slice(name)
-        for speed in range(own.start, own.stop):
-            row = columns[3 + speed]
-            strength = np.asarray(value, float) * outboard[..., speed]
-            total = total + strength[..., None, None] * np.outer(row, row)
-    return total
+_HALVINGS = 32  # of an edge's bracket
 
 
 def growth_rates(
     model: str | Model,
-    quantities: Values,
+    quantities: Values | None = None,
     *,
+    pose: Values | None = None,
+    stiffness: Values | None = None,
+    damping: Values | None = None,
     axis: Axis | str | int | None = None,
-    lock: Iterable[str] = (),
+    lock: str | Iterable[str] = (),
     subsystem: str | None = None,
 ) -> Array:
-    """Largest growth rates, in units of Ω, for arrays of quantities that broadcast.
+    """Largest growth rates for arrays of poses, springs, dampers and numbers of the bodies.
 
-    Quantities are named "pose.JOINT" (rad), "stiffness.JOINT" and "damping.JOINT" (k/(Ω² I)
-    and b/(Ω I)), "mass.BODY", "com.BODY.1", "position.BODY.2", "inertia.BODY.11"; a
-    mirrored pair's common name sets both sides. `axis` is that of `spin`. `subsystem` names a
-    coordinate and keeps only the decoupled part it is in.
+    Parameters
+    ----------
+    model : str or Model
+        A shipped model's name, a model file, or a model.
+    quantities : mapping of str to array_like, optional
+        Arrays that broadcast against each other, by "pose.JOINT" (rad), "stiffness.JOINT" and
+        "damping.JOINT" (k/(Ω² I) and b/(Ω I)), "mass.BODY" (kg), "com.BODY.1" and
+        "position.BODY.2" (m), "inertia.BODY.11" (kg m²). JOINT may be a left–right pair.
+    pose, stiffness, damping : mapping of str to array_like, optional
+        The same of joints by their name alone, as for `spin` and `Spin.linear`.
+    axis : {"minor", "intermediate", "major", 1, 2, 3}, optional
+        As for `spin`.
+    lock : str or iterable of str
+        As for `Spin.linear`.
+    subsystem : str, optional
+        Only the decoupled part that this coordinate ("tilt", …) is in.
+
+    Returns
+    -------
+    numpy.ndarray
+        Of the shape to which the arrays broadcast, in units of Ω. The signs can be relied on, and
+        0 stands where nothing grows or decays as far as can be known: see `LinearSpin.growth_rate`.
+
+    Raises
+    ------
+    SomersaultError
+        For unknown names, numbers that are not finite, arrays whose shapes do not go together, and
+        whatever `spin` refuses.
+
+    Examples
+    --------
+    >>> from somersault.stability import growth_rates
+    >>> growth_rates("furrer", pose={"shoulder": 1.3}, stiffness={"shoulder": [0.5, 1.2]}).round(3)
+    array([0.292, 0.   ])
     """
-    model = load(model)
-    require_free(model)
-    quantities = by_name("quantities", quantities)
-    whole = _system(model, or_somersault(model, axis), quantities, lock)
-    shape = np.broadcast_shapes(*(np.shape(v) for v in quantities.values()))
-    rates = [
-        _gyric.growth_rate(_gyric.reduced(p.mass, p.rate, p.stiffness, p.attitude))
-        for p in whole.parts(subsystem)
-    ]
-    worst = np.array(-np.inf)
-    for rate in rates:
-        worst = np.maximum(worst, rate)
-    return np.broadcast_to(worst, shape)
-
-
-def _lowest_energy(
-    model: Model,
-    quantities: Values,
-    axis: Axis | str | int,
-    lock: Iterable[str],
-    subsystem: str | None,
-) -> Array:
-    whole = _system(model, axis, quantities, lock)
-    rigid = len(whole.names) == len(whole.attitude.places())
-
-    def least(potential: Array) -> Array:  # of a rigid body, a maximum is as good
-        low = _gyric.lowest(potential)
-        return np.maximum(low, _gyric.lowest(-potential)) if rigid else low
-
-    lows = [
-        least(_gyric.amended(p.mass, p.rate, p.stiffness, p.attitude))
-        for p in whole.parts(subsystem)
-        if len(p.names) > (p.attitude.about is not None)
-    ]
-    shape = np.broadcast_shapes(*(np.shape(v) for v in quantities.values()))
-    worst = np.array(np.inf)
-    for low in lows:
-        worst = np.minimum(worst, low)
-    return np.broadcast_to(worst, shape)
+    by_name("quantities", quantities)
+    cases = grid(model, quantities, pose, stiffness, damping, axis, lock, subsystem)
+    return _rates(cases, {})
 
 
 def chart(
@@ -223,116 +81,144 @@ def chart(
     x: tuple[str, ArrayLike],
     y: tuple[str, ArrayLike],
     *,
+    pose: Values | None = None,
+    stiffness: Values | None = None,
+    damping: Values | None = None,
     fixed: Values | None = None,
     axis: Axis | str | int | None = None,
-    lock: Iterable[str] = (),
+    lock: str | Iterable[str] = (),
     subsystem: str | None = None,
     energy: bool = False,
 ) -> xr.Dataset:
-    """Stability over two quantities, as an `xarray.Dataset` with dimensions (y, x).
+    """Stability over two quantities.
 
-    `x` and `y` are (name, values), names as in `growth_rates`; `fixed` holds other quantities.
-    Variables: `growth_rate` (units of Ω), `stable`, and with `energy` also `definite`, where
-    the energy is a minimum and dampers do no harm.
+    Parameters
+    ----------
+    model : str or Model
+        A shipped model's name, a model file, or a model.
+    x, y : tuple of str and array_like
+        The name of a quantity, as in `growth_rates`, and its values.
+    pose, stiffness, damping : mapping of str to float, optional
+        What stays fixed, by joint, as for `spin` and `Spin.linear`.
+    fixed : mapping of str to float, optional
+        Any other quantities that stay fixed, by name as in `growth_rates`.
+    axis, lock, subsystem
+        As for `growth_rates`.
+    energy : bool
+        Whether to say, too, where the energy is definite.
+
+    Returns
+    -------
+    xarray.Dataset
+        With dimensions (y, x): `growth_rate` (units of Ω), `stable`, and with `energy` also
+        `definite`, where the energy is an extremum and dampers do no harm.
+
+    Raises
+    ------
+    SomersaultError
+        As for `growth_rates`.
+
+    Examples
+    --------
+    >>> from somersault.stability import chart
+    >>> found = chart("furrer", ("pose.shoulder", [1.3]), ("stiffness.shoulder", [0.5, 1.2]))
+    >>> found.stable.values
+    array([[False],
+           [ True]])
     """
     import xarray as xr
 
-    model = load(model)
-    axis = or_somersault(model, axis)
-    (x_name, x_values), (y_name, y_values) = _row("x of a chart", x), _row("y of a chart", y)
+    cases = grid(model, fixed, pose, stiffness, damping, axis, lock, subsystem)
+    (x_name, x_values), (y_name, y_values) = row("x of a chart", x), row("y of a chart", y)
     if x_values.ndim != 1 or y_values.ndim != 1 or not x_values.size or not y_values.size:
         raise SomersaultError("a chart needs one row of values for each of x and y")
     if x_name == y_name:
         raise SomersaultError(f"a chart of {x_name} against itself shows nothing; vary two things")
     truth("energy", energy)
-    held = by_name("fixed", fixed)
-    if {x_name, y_name} & set(held):
-        raise SomersaultError(f"{x_name} or {y_name} is varied and fixed at once; do one of them")
-    quantities = {**held, x_name: x_values[None, :], y_name: y_values[:, None]}
-    rates = growth_rates(model, quantities, axis=axis, lock=lock, subsystem=subsystem)
+    _require_open(cases, x_name, y_name)
+    varied = {x_name: x_values[None, :], y_name: y_values[:, None]}
+    rates = _rates(cases, varied)
     dims = (y_name, x_name)
     data: dict[str, Any] = {
         "growth_rate": (dims, rates, {"units": "spin rate", "long_name": "largest growth rate"}),
-        "stable": (dims, rates <= TOLERANCE, {"long_name": "directionally stable"}),
+        "stable": (dims, rates <= 0, {"long_name": "directionally stable"}),
     }
     if energy:
-        low = _lowest_energy(model, quantities, axis, lock, subsystem)
-        data["definite"] = (dims, low > 0, {"long_name": "energy is a minimum"})
+        extremum = _everywhere(cases, varied)
+        data["definite"] = (dims, extremum, {"long_name": "energy is an extremum"})
     return xr.Dataset(
         data,
         coords={
-            name: (name, values, {"units": unit(model, name)})
+            name: (name, values, {"units": unit(cases.model, name)})
             for name, values in ((x_name, x_values), (y_name, y_values))
         },
-        attrs={"model": model.name, "axis": str(axis), "subsystem": subsystem or "all"},
+        attrs=cases.attributes,
     )
-
-
-def _row(what: str, given: Any) -> tuple[str, Array]:
-    try:
-        name, values = given
-        return str(name), np.asarray(values, float)
-    except (TypeError, ValueError):
-        raise SomersaultError(
-            f"{what} is a name and values, ('pose.shoulder', [0, 1]), not {given!r}"
-        ) from None
-
-
-def unit(model: Model, name: str) -> str:
-    """Unit of a quantity's values."""
-    kind, _, rest = name.partition(".")
-    if kind == "pose":
-        joint = next(
-            (j for j in model.joints if j.name in spread(model, {rest: 0}, mirrored=True)), None
-        )
-        return "m" if joint is not None and joint.kind == "slide" else "rad"
-    return {
-        "stiffness": "k/(Ω² I)",
-        "damping": "b/(Ω I)",
-        "mass": "kg",
-        "com": "m",
-        "position": "m",
-    }.get(kind, "kg m2")
 
 
 def root_locus(
     model: str | Model,
     along: tuple[str, ArrayLike],
     *,
+    pose: Values | None = None,
+    stiffness: Values | None = None,
+    damping: Values | None = None,
     fixed: Values | None = None,
     axis: Axis | str | int | None = None,
-    lock: Iterable[str] = (),
+    lock: str | Iterable[str] = (),
     subsystem: str | None = None,
 ) -> xr.Dataset:
-    """Roots while one quantity is varied: `growth` and `frequency`, their real and
-    imaginary parts (value, root), in units of Ω.
+    """All roots while one quantity is varied.
 
+    They are those of the whole second-order system, nothing eliminated: the stroboscopic roots and
+    the zeros of the drift are among them.
 
-    From the whole second-order system, nothing eliminated: the stroboscopic roots and the
-    zeros of the drift are among them.
+    Parameters
+    ----------
+    model : str or Model
+        A shipped model's name, a model file, or a model.
+    along : tuple of str and array_like
+        The name of a quantity, as in `growth_rates`, and its values (N,).
+    pose, stiffness, damping, fixed
+        What stays fixed, as for `chart`.
+    axis, lock, subsystem
+        As for `growth_rates`.
+
+    Returns
+    -------
+    xarray.Dataset
+        `growth` and `frequency`, real and imaginary part of each root, with dimensions
+        (quantity, root), in units of Ω.
+
+    Raises
+    ------
+    SomersaultError
+        As for `growth_rates`.
+
+    Examples
+    --------
+    >>> from somersault.stability import root_locus
+    >>> root_locus("furrer", ("stiffness.shoulder", [0.5, 1.2]), pose={"shoulder": 1.3}).sizes
+    Frozen({'stiffness.shoulder': 2, 'root': 10})
     """
     import xarray as xr
 
-    model = load(model)
-    require_free(model)
-    axis = or_somersault(model, axis)
-    name, values = _row("what a root locus is along", along)
+    cases = grid(model, fixed, pose, stiffness, damping, axis, lock, subsystem)
+    name, values = row("what a root locus is along", along)
     if values.ndim != 1 or not values.size:
         raise SomersaultError("a root locus needs one row of values")
-    whole = _system(model, axis, {**by_name("fixed", fixed), name: values}, lock)
+    _require_open(cases, name)
     found = [
         np.broadcast_to(r, (len(values), r.shape[-1]))
-        for r in (
-            _gyric.roots(p.mass, p.rate, p.stiffness, p.attitude) for p in whole.parts(subsystem)
-        )
+        for r in (part.roots() for part in cases.parts({name: values}))
     ]
     roots = np.concatenate(found, -1)
     dims = (name, "root")
     attrs = {"units": "spin rate"}
     return xr.Dataset(
         {"growth": (dims, roots.real, attrs), "frequency": (dims, roots.imag, attrs)},
-        coords={name: (name, values, {"units": unit(model, name)})},
-        attrs={"model": model.name, "axis": str(axis), "subsystem": subsystem or "all"},
+        coords={name: (name, values, {"units": unit(cases.model, name)})},
+        attrs=cases.attributes,
     )
 
 
@@ -340,40 +226,172 @@ def stable_ranges(
     model: str | Model,
     along: tuple[str, float, float],
     *,
+    pose: Values | None = None,
+    stiffness: Values | None = None,
+    damping: Values | None = None,
     fixed: Values | None = None,
     axis: Axis | str | int | None = None,
-    lock: Iterable[str] = (),
+    lock: str | Iterable[str] = (),
     subsystem: str | None = None,
     samples: int = 1201,
 ) -> list[tuple[float, float]]:
     """Where between two values of a quantity the spin is stable, each edge to about 1e-9.
 
-    Looks at `samples` evenly spaced values, so an island narrower than their spacing can be
-    missed, then halves each edge's bracket.
+    Looks at evenly spaced values, so an island narrower than their spacing can be missed, then
+    halves each edge's bracket.
+
+    Parameters
+    ----------
+    model : str or Model
+        A shipped model's name, a model file, or a model.
+    along : tuple of str, float and float
+        The name of a quantity, as in `growth_rates`, its least and its greatest value.
+    pose, stiffness, damping, fixed
+        What stays fixed, one number each, as for `chart`.
+    axis, lock, subsystem
+        As for `growth_rates`.
+    samples : int
+        How many values to look at.
+
+    Returns
+    -------
+    list of tuple of float
+        The ends of each stable range.
+
+    Raises
+    ------
+    SomersaultError
+        As for `growth_rates`.
+
+    Examples
+    --------
+    >>> from somersault.stability import stable_ranges
+    >>> for low, high in stable_ranges("furrer", ("stiffness.shoulder", -2, 4),
+    ...                                pose={"shoulder": 1.3}):
+    ...     print(f"{low:.4f} to {high:.4f}")
+    0.8940 to 1.3486
     """
+    cases = grid(model, fixed, pose, stiffness, damping, axis, lock, subsystem)
+    name, low, high = _ends(along)
+    _require_open(cases, name)
+    if cases.shape({}):
+        raise SomersaultError(
+            "stable ranges are those of one case, and these are arrays; use stable_ranges_by_case"
+        )
+    return _ranges(cases, name, low, high, samples)[0]
+
+
+def stable_ranges_by_case(
+    model: str | Model,
+    along: tuple[str, float, float],
+    *,
+    pose: Values | None = None,
+    stiffness: Values | None = None,
+    damping: Values | None = None,
+    fixed: Values | None = None,
+    axis: Axis | str | int | None = None,
+    lock: str | Iterable[str] = (),
+    subsystem: str | None = None,
+    samples: int = 1201,
+) -> list[list[tuple[float, float]]]:
+    """`stable_ranges` of many cases at once: of many poses, say.
+
+    Parameters
+    ----------
+    model, along, axis, lock, subsystem, samples
+        As for `stable_ranges`.
+    pose, stiffness, damping, fixed
+        The cases: arrays (N,), or numbers where all cases have the same.
+
+    Returns
+    -------
+    list of list of tuple of float
+        The ends of the stable ranges of each case.
+
+    Raises
+    ------
+    SomersaultError
+        As for `growth_rates`.
+
+    Examples
+    --------
+    >>> from somersault.stability import stable_ranges_by_case
+    >>> found = stable_ranges_by_case("furrer", ("stiffness.shoulder", -2, 4),
+    ...                               pose={"shoulder": [0.1, 1.3]})
+    >>> [len(ranges) for ranges in found]
+    [0, 1]
+    """
+    cases = grid(model, fixed, pose, stiffness, damping, axis, lock, subsystem)
+    name, low, high = _ends(along)
+    _require_open(cases, name)
+    if len(cases.shape({})) != 1:
+        raise SomersaultError("cases are rows of numbers, (N,); use stable_ranges for one case")
+    return _ranges(cases, name, low, high, samples)
+
+
+def _rates(cases: Grid, varied: Values) -> Array:
+    """Largest growth rate of each case, over its parts."""
+    shape = cases.shape(varied)
+    if 0 in shape:
+        return np.zeros(shape)
+    worst = np.array(-np.inf)
+    for part in cases.parts(varied):
+        worst = np.maximum(worst, growth_rate(part))
+    return np.broadcast_to(worst, shape)
+
+
+def _everywhere(cases: Grid, varied: Values) -> Array:
+    """Where the energy of each part is definite."""
+    good = np.array(True)
+    for part in cases.parts(varied):
+        good = good & definite(part)
+    return np.broadcast_to(good, cases.shape(varied))
+
+
+def _require_open(cases: Grid, *names: str) -> None:
+    """Refuse a quantity that is varied and fixed at once."""
+    for name in names:
+        if name in cases.fixed:
+            raise SomersaultError(f"{name} is varied and fixed at once; do one of the two")
+
+
+def _ends(along: Any) -> tuple[str, float, float]:
     if not isinstance(along, tuple | list) or len(along) != 3:
         raise SomersaultError(
             "what stable ranges are along is a name, a lower and a higher value, "
             f"('stiffness.shoulder', -2, 4), not {along!r}"
         )
-    name, (low, high) = _row("what stable ranges are along", (along[0], along[1:]))
+    name, (low, high) = row("what stable ranges are along", (along[0], along[1:]))
     if not low < high:
         raise SomersaultError(f"stable ranges of {name} need a lower and a higher value")
+    return name, float(low), float(high)
+
+
+def _ranges(
+    cases: Grid, name: str, low: float, high: float, samples: int
+) -> list[list[tuple[float, float]]]:
+    """Ranges of one quantity in which each case is stable: by looking, and then by halving."""
     whole_number("samples", samples, 2, _MOST_SAMPLES)
-    held = by_name("fixed", fixed)
+    held = {key: np.asarray(value, float) for key, value in cases.fixed.items()}
     values = np.linspace(low, high, samples)
 
-    def stable(at: Array) -> Array:
-        rates = growth_rates(model, {**held, name: at}, axis=axis, lock=lock, subsystem=subsystem)
-        return rates <= TOLERANCE
+    def stable(at: Array, case: Array | None) -> Array:
+        of_case = {key: v if v.ndim == 0 else v[case] for key, v in held.items()}
+        return _rates(cases, {**of_case, name: at}) <= 0
 
-    inside = stable(values)
-    change = np.flatnonzero(inside[1:] != inside[:-1])
-    left, right = values[change], values[change + 1]
-    starts_inside = inside[change]
-    for _ in range(32 if len(change) else 0):
+    (count,) = cases.shape({}) or (1,)
+    inside = np.broadcast_to(stable(values, np.arange(count)[:, None]), (count, samples))
+    case, column = np.nonzero(inside[:, 1:] != inside[:, :-1])
+    left, right = values[column], values[column + 1]
+    starts_inside = inside[case, column]
+    for _ in range(_HALVINGS if len(case) else 0):
         middle = (left + right) / 2
-        same = stable(middle) == starts_inside
+        same = stable(middle, case) == starts_inside
         left, right = np.where(same, middle, left), np.where(same, right, middle)
-    edges = [*([low] if inside[0] else []), *((left + right) / 2), *([high] if inside[-1] else [])]
-    return [(float(a), float(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+    edges = (left + right) / 2
+    found = []
+    for k in range(count):
+        first, last = ([low] if inside[k, 0] else []), ([high] if inside[k, -1] else [])
+        ends = [*first, *edges[case == k].tolist(), *last]
+        found.append(list(zip(ends[::2], ends[1::2], strict=True)))
+    return found

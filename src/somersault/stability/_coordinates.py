@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.model import Model
-from somersault.model._mirror import mirror_pairs
+from somersault._core.errors import SomersaultError
+from somersault.model import Model, mirror_pairs, spread
 from somersault.stability._gyric import Attitude, blocks, together
-from somersault.stability._spin import cycle
+from somersault.stability._principal import cycle
 
 _TURNS = ("somersault", "tilt", "twist")  # about a model's `axes`
+_FIRST = ("tilt", "somersault", "twist")  # the thesis's order of the turns across the spin
 
 
 @dataclass(frozen=True)
@@ -26,6 +28,11 @@ class Coordinates:
     def transformed(self, matrix: Array) -> Array:
         """Bᵀ A B of a matrix (…, 3 + speeds, 3 + speeds)."""
         return self.columns.T @ matrix @ self.columns
+
+    def of_joints(self, values: Array) -> Array:
+        """Bᵀ diag(0, values) B of numbers at the joint speeds, (…, speeds): springs or dampers."""
+        rows = self.columns[3:]
+        return np.einsum("...s,si,sj->...ij", values, rows, rows)
 
     def ordered(self, coupled: Array) -> list[int]:
         """Decoupled subsystems one after the other, the one of tilt and twist first."""
@@ -43,7 +50,7 @@ def coordinates(model: Model, axis: int, locked: set[int]) -> Coordinates:
     before, about, after = cycle(axis)
     turns = {i: np.eye(3 + count)[:, i] for i in range(3)}
     called = {axis - 1: name for axis, name in zip(model.axes, _TURNS, strict=True)}
-    across = sorted((before, after), key=lambda i: ("tilt", "somersault", "twist").index(called[i]))
+    across = sorted((before, after), key=lambda i: _FIRST.index(called[i]))
     antisymmetric: list[tuple[str, Array]] = []
     symmetric: list[tuple[str, Array]] = []
     left = [i for i in range(count) if i not in locked]
@@ -68,3 +75,38 @@ def coordinates(model: Model, axis: int, locked: set[int]) -> Coordinates:
 
 def _unit(count: int, speed: int) -> Array:
     return np.eye(3 + count)[:, 3 + speed]
+
+
+def locked_speeds(model: Model, lock: str | Iterable[str]) -> set[int]:
+    """Places of the locked joints' speeds.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    lock : str or iterable of str
+        Names of joints or of left–right pairs; "all" locks every joint.
+
+    Returns
+    -------
+    set of int
+        Places in `model.speeds`.
+
+    Raises
+    ------
+    SomersaultError
+        For a name that is no joint.
+    """
+    if isinstance(lock, str):
+        lock = [lock]
+    try:
+        names = [str(name) for name in lock]
+    except TypeError:
+        raise SomersaultError(f"lock takes joint names, and is {lock!r}") from None
+    if "all" in names:
+        names = [joint.name for joint in model.joints]
+    places: set[int] = set()
+    for name in spread(model, dict.fromkeys(names, 0.0), mirrored=False):
+        own = model.speed_slice(name)
+        places |= set(range(own.start, own.stop))
+    return places

@@ -1,25 +1,24 @@
 """Linear gyric systems M ẍ + (G + D) ẋ + K x = 0 in the frame of a steady spin.
 
-Everything takes stacks of matrices (…, n, n). `Attitude` says which coordinates are the body's
-own attitude: for those the equations are the balance of angular momentum, so three linear
-integrals are known, δh = M_a ẋ + P x, read off the matrices themselves. On δh = 0, the motions
-that keep the angular momentum, what remains has neither the drift of the spin's own angle nor
-the stroboscopic mode, and its energy tells stability that lasts from stability that damping
-destroys (the energy–momentum method; Hughes 1986, ch. 4, for one rigid body).
+Matrices may be stacks (…, n, n). `Attitude` says which coordinates are the body's own attitude: for
+those the equations are the balance of angular momentum, so three linear integrals are known,
+δh = M_a ẋ + P x, read off the matrices themselves. On δh = 0, the motions that keep the angular
+momentum, what remains has neither the drift of the spin's own angle nor the stroboscopic mode, and
+its energy tells stability that lasts from stability that damping destroys (the energy–momentum
+method; Hughes 1986, ch. 4, for one rigid body).
 """
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.errors import SomersaultError
 
-TOLERANCE = 1e-6  # growth rates below this, in units of Ω, count as none
+_DECOUPLED = 1e-10  # of two coordinates' inertias: what acts less than that is rounding
 
 
 @dataclass(frozen=True)
@@ -38,97 +37,179 @@ class Attitude:
         """Those that are present."""
         return [p for p in (self.before, self.about, self.after) if p is not None]
 
+    def part(self, keep: list[int]) -> Attitude:
+        """The places among some of the coordinates."""
+        moved = [
+            keep.index(p) if p in keep else None for p in (self.before, self.about, self.after)
+        ]
+        return Attitude(*moved)
 
-def roots(m: Array, c: Array, k: Array, attitude: Attitude) -> Array:
-    """All 2n roots s of det(M s² + C s + K), (…, 2n), by imaginary part and then real.
 
-    Turning about the axis of spin changes nothing, so its column of K is zero and gives one
-    root that is exactly zero; it is split off, which keeps the other zero root (a changed
-    spin rate) from being smeared by a double one.
+@dataclass(frozen=True, eq=False)
+class GyricSystem:
+    """M ẍ + (G + D) ẋ + K x = 0 over named coordinates, time in units of 1/Ω; one or a stack.
+
+    `stiffness` is that of the spin and of the springs together.
     """
-    n = m.shape[-1]
-    inner = [p for p in range(n) if p != attitude.about]
-    bottom = -np.linalg.solve(m, _joined(k[..., inner], c, -1))
-    top = np.zeros((len(inner), len(inner) + n))
-    for row, p in enumerate(inner):
-        top[row, len(inner) + p] = 1.0
-    found = np.linalg.eigvals(_joined(top, bottom, -2)).astype(complex)
-    zero = np.zeros((*found.shape[:-1], n - len(inner)), complex)
-    found = np.concatenate([found, zero], -1)
-    order = np.lexsort((found.real.round(9), found.imag.round(9)))
-    return np.take_along_axis(found, order, -1)
+
+    names: tuple[str, ...]
+    mass: Array
+    gyric: Array
+    damping: Array
+    stiffness: Array
+    attitude: Attitude
+
+    @cached_property
+    def joints(self) -> list[int]:
+        """Places of the joints' coordinates."""
+        turns = self.attitude.places()
+        return [p for p in range(len(self.names)) if p not in turns]
+
+    @cached_property
+    def deviations(self) -> list[int]:
+        """Places of all coordinates but the turn about the axis of spin, which changes nothing."""
+        return [p for p in range(len(self.names)) if p != self.attitude.about]
+
+    @property
+    def rigid(self) -> bool:
+        """Whether no joint moves, so that a maximum of the energy is as good as a minimum."""
+        return not self.joints
+
+    @cached_property
+    def groups(self) -> list[list[int]]:
+        """Places of the coordinates of each subsystem, which does not act on the others.
+
+        The two turns across the axis of spin stay together, because they share an integral.
+        """
+        near = coupled(self.mass, self.gyric, self.damping, self.stiffness)
+        return blocks(together(near, self.attitude))
+
+    def part(self, keep: list[int]) -> GyricSystem:
+        """The system over some of the coordinates."""
+
+        def cut(a: Array) -> Array:
+            return a[..., keep, :][..., keep]
+
+        return GyricSystem(
+            tuple(self.names[i] for i in keep),
+            cut(self.mass),
+            cut(self.gyric),
+            cut(self.damping),
+            cut(self.stiffness),
+            self.attitude.part(keep),
+        )
+
+    def parts(self, subsystem: str | None = None) -> list[GyricSystem]:
+        """The decoupled parts, or only the one with a coordinate of that name."""
+        groups = self.groups
+        if subsystem is not None:
+            place = self.place(subsystem)
+            groups = [group for group in groups if place in group]
+        return [self.part(group) for group in groups]
+
+    def place(self, name: str) -> int:
+        """Where a coordinate stands; SomersaultError, with those there are, if there is none."""
+        if not isinstance(name, str) or name not in self.names:
+            raise SomersaultError(
+                f"there is no coordinate {name!r}; there are {', '.join(self.names)}"
+            )
+        return self.names.index(name)
+
+    def undamped(self) -> GyricSystem:
+        """The same without its dampers."""
+        return replace(self, damping=np.zeros_like(self.damping))
+
+    @cached_property
+    def sizes(self) -> Array:
+        """Square root of each coordinate's own inertia, (…, n)."""
+        return np.sqrt(np.einsum("...kk->...k", self.mass))
+
+    def scaled(self) -> ScaledSystem:
+        """The same with each coordinate in units of its own inertia: 1 on the diagonal of M.
+
+        Whether a coordinate was in radians or in metres is then of no account for rounding.
+        """
+        turns, x, size = self.attitude.places(), self.deviations, self.sizes
+        m, g, d, k = (
+            a / _outer(size, size) for a in (self.mass, self.gyric, self.damping, self.stiffness)
+        )
+        inverse, held = self.integrals()
+        of_turns, of_x = size[..., turns], size[..., x]
+        return ScaledSystem(
+            m, g + d, d, k, inverse * _outer(of_turns, of_turns), held / _outer(of_turns, of_x),
+            self.amended() / _outer(of_x, of_x),
+        )  # fmt: skip
+
+    def roots(self) -> Array:
+        """All 2n roots s of det(M s² + (G + D) s + K), (…, 2n), by imaginary part and then real.
+
+        Turning about the axis of spin changes nothing, so its column of K is zero and gives one
+        root that is exactly zero; it is split off, which keeps the other zero root (a changed
+        spin rate) from being smeared by a double one.
+        """
+        n, inner = len(self.names), self.deviations
+        rate = self.gyric + self.damping
+        bottom = -np.linalg.solve(self.mass, _joined(self.stiffness[..., inner], rate, -1))
+        top = np.zeros((len(inner), len(inner) + n))
+        for row, p in enumerate(inner):
+            top[row, len(inner) + p] = 1.0
+        roots = np.linalg.eigvals(_joined(top, bottom, -2)).astype(complex)
+        zero = np.zeros((*roots.shape[:-1], n - len(inner)), complex)
+        roots = np.concatenate([roots, zero], -1)
+        order = np.lexsort((roots.real.round(9), roots.imag.round(9)))
+        return np.take_along_axis(roots, order, -1)
+
+    def integrals(self) -> tuple[Array, Array]:
+        """M_aa⁻¹ and P (over all but the turn about the axis of spin) of δh = M_a ẋ + P x.
+
+        In the turning frame the momentum balance reads ḣ + e × h = 0, so each transverse row of
+        K is a row of P, and along the axis of spin the row of G is.
+        """
+        before, about, after = self.attitude.before, self.attitude.about, self.attitude.after
+        zero = np.zeros(len(self.names))
+        rows = []
+        if before is not None:
+            rows.append(zero if after is None else -self.stiffness[..., after, :])
+        if about is not None:
+            rows.append(self.gyric[..., about, :])
+        if after is not None:
+            rows.append(zero if before is None else self.stiffness[..., before, :])
+        lead = np.broadcast_shapes(*(row.shape[:-1] for row in rows)) if rows else ()
+        held = np.zeros((*lead, len(rows), len(self.deviations)))
+        for index, row in enumerate(rows):
+            held[..., index, :] = row[..., self.deviations]
+        turns = self.attitude.places()
+        return np.linalg.inv(self.mass[..., turns, :][..., turns]), held
+
+    def amended(self) -> Array:
+        """Hessian over the deviations of the energy at fixed angular momentum, K + Pᵀ M_aa⁻¹ P,
+        (…, n − 1, n − 1).
+
+        The rest of that energy is positive definite in the joints' rates. Only the symmetric part
+        of K counts.
+        """
+        x = self.deviations
+        inverse, held = self.integrals()
+        matrix = self.stiffness[..., x, :][..., x] + np.swapaxes(held, -1, -2) @ inverse @ held
+        return (matrix + np.swapaxes(matrix, -1, -2)) / 2
 
 
-def reduced(m: Array, c: Array, k: Array, attitude: Attitude) -> Array:
-    """A in ẏ = A y, y = (x, q̇): the motions that keep the angular momentum.
+@dataclass(frozen=True, eq=False)
+class ScaledSystem:
+    """M, C = G + D, D and K of a system, M_aa⁻¹ and P of its integrals δh = M_a ẋ + P x, and its
+    amended potential, with coordinates in units of their own inertia."""
 
-    x are all coordinates but the turn about the axis of spin, q̇ the joints' rates; the
-    attitude rates follow from δh = 0. C holds G + D, and K the springs: the integrals use the
-    attitude's rows only, in which the joints' springs and dampers do not appear.
-    """
-    n = m.shape[-1]
-    turns = attitude.places()
-    joints = [p for p in range(n) if p not in turns]
-    x = [p for p in range(n) if p != attitude.about]
-    across, inverse, held = _integrals(m, c, k, attitude)
-    from_rates = -inverse @ across[..., joints]  # attitude rates = from_rates q̇ + from_x x
-    from_x = -inverse @ held
-    velocity_x = np.zeros((*from_x.shape[:-2], len(x), len(x)))  # ẋ = velocity_x x + velocity_q q̇
-    velocity_q = np.zeros((*from_rates.shape[:-2], len(x), len(joints)))
-    for row, p in enumerate(x):
-        if p in turns:
-            velocity_x[..., row, :] = from_x[..., turns.index(p), :]
-            velocity_q[..., row, :] = from_rates[..., turns.index(p), :]
-        else:
-            velocity_q[..., row, joints.index(p)] = 1.0
-    upper = _joined(velocity_x, velocity_q, -1)
-    if not joints:
-        return upper
-    own = m[..., joints, :]
-    mass = own[..., joints] + own[..., turns] @ from_rates
-    carried = own[..., turns] @ from_x  # M_ja v̇_a with v̇_a = from_rates q̈ + from_x ẋ
-    rate = c[..., joints, :]
-    by_x = carried @ velocity_x + rate[..., turns] @ from_x + k[..., joints, :][..., x]
-    by_q = carried @ velocity_q + rate[..., turns] @ from_rates + rate[..., joints]
-    lower = -np.linalg.inv(mass) @ _joined(by_x, by_q, -1)
-    return _joined(upper, lower, -2)
+    mass: Array
+    rate: Array
+    damping: Array
+    stiffness: Array
+    inverse: Array
+    held: Array
+    potential: Array
 
 
-def amended(m: Array, c: Array, k: Array, attitude: Attitude) -> Array:
-    """Hessian over x of the energy at fixed angular momentum, K + Pᵀ M_aa⁻¹ P (…, n − 1, n − 1).
-
-    The rest of that energy is positive definite in the joints' rates.
-    """
-    x = [p for p in range(m.shape[-1]) if p != attitude.about]
-    _, inverse, held = _integrals(m, c, k, attitude)
-    return k[..., x, :][..., x] + np.swapaxes(held, -1, -2) @ inverse @ held
-
-
-def _integrals(m: Array, c: Array, k: Array, attitude: Attitude) -> tuple[Array, Array, Array]:
-    """M_a, M_aa⁻¹ and P (over x) of δh = M_a ẋ + P x.
-
-    In the turning frame the momentum balance reads ḣ + e × h = 0, so each transverse row of
-    K is a row of P, and along the axis of spin the row of G is.
-    """
-    turns = attitude.places()
-    x = [p for p in range(m.shape[-1]) if p != attitude.about]
-    across = m[..., turns, :]
-    rows = []
-    if attitude.before is not None:
-        rows.append(_row(k, attitude.after, -1.0))
-    if attitude.about is not None:
-        rows.append(c[..., attitude.about, :])
-    if attitude.after is not None:
-        rows.append(_row(k, attitude.before, 1.0))
-    lead = np.broadcast_shapes(*(row.shape[:-1] for row in rows)) if rows else ()
-    held = np.zeros((*lead, len(rows), len(x)))
-    for index, row in enumerate(rows):
-        held[..., index, :] = row[..., x]
-    return across, np.linalg.inv(across[..., turns]), held
-
-
-def _row(k: Array, place: int | None, sign: float) -> Array:
-    return np.zeros(k.shape[-1]) if place is None else sign * k[..., place, :]
+def _outer(a: Array, b: Array) -> Array:
+    return a[..., :, None] * b[..., None, :]
 
 
 def _joined(a: Array, b: Array, axis: int) -> Array:
@@ -138,27 +219,15 @@ def _joined(a: Array, b: Array, axis: int) -> Array:
     return np.concatenate(parts, axis)
 
 
-def growth_rate(system: Array) -> Array:
-    """Largest real part of the eigenvalues of each matrix, (…); 0 for an empty one."""
-    if system.shape[-1] == 0:
-        return np.zeros(system.shape[:-2])
-    return _threaded(lambda part: np.linalg.eigvals(part).real.max(-1), system)
+def coupled(mass: Array, *others: Array) -> Array:
+    """Which coordinates act on each other, rounding aside, in any of a stack of systems."""
+    size = np.sqrt(_largest(np.einsum("...kk->...k", mass), 1))
+    worst = sum(_largest(a, 2) for a in (mass, *others))
+    return worst > _DECOUPLED * size[:, None] * size[None, :]
 
 
-def lowest(symmetric: Array) -> Array:
-    """Lowest eigenvalue of each symmetric matrix, (…)."""
-    return _threaded(lambda part: np.linalg.eigvalsh(part)[:, 0], symmetric)
-
-
-def _threaded(function: Callable[[Array], Array], matrices: Array) -> Array:
-    """A reduction of each matrix to a number; LAPACK frees Python's lock, so threads help."""
-    flat = matrices.reshape(-1, *matrices.shape[-2:])
-    if len(flat) < 4096:
-        return function(flat).reshape(matrices.shape[:-2])
-    workers = os.cpu_count() or 1
-    with ThreadPoolExecutor(workers) as pool:
-        parts = list(pool.map(function, np.array_split(flat, 4 * workers)))
-    return np.concatenate(parts).reshape(matrices.shape[:-2])
+def _largest(stack: Array, keep: int) -> Array:
+    return np.abs(stack).max(axis=tuple(range(stack.ndim - keep)))
 
 
 def together(coupled: Array, attitude: Attitude) -> Array:

@@ -11,11 +11,18 @@ from typing import Any
 
 import casadi as ca
 
-from somersault.dynamics import Equations, Expression
-from somersault.dynamics._composite import outboard_inertia
-from somersault.dynamics._motion import place
-from somersault.dynamics._newton_euler import inverse_dynamics
-from somersault.dynamics._vector import Vec, cross, scale, vadd, vsub
+from somersault.dynamics import (
+    Equations,
+    Expression,
+    Vec,
+    cross,
+    inverse_dynamics,
+    outboard_inertia,
+    place,
+    scale,
+    vadd,
+    vsub,
+)
 from somersault.model import Model
 
 
@@ -37,7 +44,7 @@ def spin_matrices(equations: Equations) -> Expression:
     placed = place(equations.tree, [q[k] for k in range(q.numel())])
     outboard = outboard_inertia(equations.tree, placed)
     value = ca.horzcat(*at_rest, ca.vertcat(0.0, 0.0, 0.0, *outboard))
-    arguments = {"q": q, "axis": axis, "parameters": equations._p}
+    arguments = {"q": q, "axis": axis, "parameters": equations.open_parameters}
     return Expression("spin_matrices", arguments, value)
 
 
@@ -48,7 +55,7 @@ def spin_torques(equations: Equations) -> Expression:
     axis = ca.SX.sym("axis", 3)
     still = ca.SX.zeros(3 + len(model.speeds))
     loads = ca.vertcat(*_loads(equations, q, axis, still, still, still)[3:])
-    arguments = {"q": q, "axis": axis, "parameters": equations._p}
+    arguments = {"q": q, "axis": axis, "parameters": equations.open_parameters}
     return Expression("spin_torques", arguments, loads)
 
 

@@ -4,27 +4,36 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.model._mirror import common_name
+from somersault.model import Model, common_name, mirror_pairs
+from somersault.stability._growth import balanced, condition, conservative, rounding, slow_rates
+from somersault.stability._gyric import GyricSystem
 
-if TYPE_CHECKING:
-    from somersault.stability._linear import LinearSpin
-
-_SMALL = 1e-6
+_SMALL = 1e-6  # imaginary parts below it, in units of Ω, are those of real roots
+_STILL = 1e-5  # of a shape: joints that move less do not move
+_SIGNED = 1e-6  # of a mode's kinetic energy: what less there is of the whole has no sign
 _TAKES_PART = 0.2  # of the largest share of kinetic energy
 
 
 @dataclass(frozen=True, eq=False)
 class Mode:
-    """x(t) = Re(shape · exp(root Ω t)).
+    """One way in which a spin deviates: x(t) = Re(shape · exp(root Ω t)).
 
-    `energy` is the sign of its energy at fixed angular momentum: a mode of negative energy
-    (−1) grows when damping takes energy away. It is 0 where the sign means nothing: real
-    roots, growing oscillations, and the two modes that change the angular momentum.
+    Attributes
+    ----------
+    name : str
+        What moves, and how: "antisymmetric arm–body oscillation", "stroboscopic", ….
+    root : complex
+        In units of the spin rate Ω: growth rate and frequency.
+    shape : numpy.ndarray, shape (coordinates,)
+        Complex amplitudes of the coordinates, the largest of them 1.
+    energy : int
+        The sign of its energy at fixed angular momentum. A mode of negative energy (−1) grows
+        when damping takes energy away. It is 0 where the sign means nothing: real roots, growing
+        oscillations that no damper feeds, and the two modes that change the angular momentum.
     """
 
     name: str
@@ -33,37 +42,47 @@ class Mode:
     energy: int
 
 
-def modes(system: LinearSpin) -> tuple[Mode, ...]:
+def modes(model: Model, system: GyricSystem) -> tuple[Mode, ...]:
     """One mode for each root with Im ≥ 0, slowest first; drifts of the spin angle as one.
 
     Subsystem by subsystem, so that rounding cannot mix what does not act on each other.
     """
-    found = [mode for group in system.groups for mode in _of_part(system, group)]
+    found = [mode for group in system.groups for mode in _of_part(model, system, group)]
     found.sort(key=lambda mode: (round(mode.root.imag, 9), round(mode.root.real, 9)))
     return tuple(found)
 
 
-def _of_part(system: LinearSpin, keep: list[int]) -> list[Mode]:
+def _of_part(model: Model, system: GyricSystem, keep: list[int]) -> list[Mode]:
     part = system.part(keep)
-    m, c, k = part.M, part.G + part.D, part.K + part.K_springs
-    n = len(m)
+    scaled = part.scaled()
+    m, d, k, n = scaled.mass, scaled.damping, scaled.stiffness, len(keep)
     inverse = np.linalg.inv(m)
-    first_order = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ k, -inverse @ c]])
-    values, vectors = np.linalg.eig(first_order)
+    still, unit = np.zeros((n, n)), np.eye(n)
+    matrix, scale = balanced(still, unit, -inverse @ k, -inverse @ scaled.rate)
+    values, vectors = np.linalg.eig(matrix)
+    x, rates = vectors[:n], vectors[n:] * scale[:, None]
+    unsure = np.abs(values.real) <= rounding(matrix, inverse) * condition(vectors)
+    slow = slow_rates(x, rates, k, m, d) if conservative(scaled) else np.zeros(2 * n)
+    real = np.where(unsure, slow, values.real)
     found: list[Mode] = []
-    drift = _drift(part)
-    if drift is not None:
-        found.append(drift)
-    # The drift is a double zero, which rounding splits into a tiny pair: the two nearest zero.
-    skip = set(np.argsort(np.abs(values))[: 2 if drift is not None else 0].tolist())
-    for i, root in enumerate(values):
-        if i in skip or root.imag < -_SMALL * 1e-3:
+    about = part.attitude.about
+    # Turning a little faster or slower is a double zero, which rounding splits into a tiny pair:
+    # the two nearest zero.
+    skip = set() if about is None else set(np.argsort(np.abs(values))[:2].tolist())
+    if about is not None:
+        found.append(Mode(f"{part.names[about]} drift", 0j, np.eye(n, dtype=complex)[about], 0))
+    for i in range(2 * n):
+        if i in skip or values[i].imag < -_SMALL * 1e-3:
             continue
-        shape = vectors[:n, i]
+        root = complex(real[i], values[i].imag)
+        shape = x[:, i] / part.sizes
         shape = shape / shape[np.argmax(np.abs(shape))]
-        energy = _energy(m, k, shape, root)
-        found.append(Mode(_name(part, shape, root), complex(root), shape, energy))
-    whole = np.zeros(len(system.M), complex)
+        if _stroboscopic(part, shape, root):
+            found.append(Mode("stroboscopic", root, shape, 0))
+            continue
+        name, energy = _name(model, part, shape, root), _energy(part, shape, root)
+        found.append(Mode(name, root, shape, energy))
+    whole = np.zeros(len(system.names), complex)
     return [replace(mode, shape=_embedded(mode.shape, keep, whole)) for mode in found]
 
 
@@ -73,61 +92,42 @@ def _embedded(shape: Array, keep: list[int], whole: Array) -> Array:
     return result
 
 
-def _drift(system: LinearSpin) -> Mode | None:
-    """Turning a little faster or slower: the somersault angle runs away at a steady rate."""
-    if system.attitude.about is None:
-        return None
-    shape = np.zeros(len(system.M), complex)
-    shape[system.attitude.about] = 1.0
-    return Mode(f"{system.coordinates[system.attitude.about]} drift", 0j, shape, 0)
+def _stroboscopic(system: GyricSystem, shape: Array, root: complex) -> bool:
+    """A spin as steady as before, about an axis that points elsewhere: it changes the momentum."""
+    return abs(root - 1j) < _STILL and bool(np.all(np.abs(shape[system.joints]) < _STILL))
 
 
-def _energy(m: Array, k: Array, shape: Array, root: complex) -> int:
-    """Sign of ẋᵀMẋ + xᵀKx averaged over an undamped oscillation (Krein's signature)."""
-    if abs(root.real) > _SMALL or root.imag < _SMALL or abs(root.imag - 1) < _SMALL:
+def _energy(system: GyricSystem, shape: Array, root: complex) -> int:
+    """Sign of ẋᵀMẋ + xᵀKx, averaged over an oscillation (Krein's signature)."""
+    if root.imag < _SMALL:
         return 0
-    value = (shape.conj() @ (abs(root) ** 2 * m + k) @ shape).real
-    size = (shape.conj() @ m @ shape).real * abs(root) ** 2
-    return 0 if abs(value) < _SMALL * size else int(np.sign(value))
+    kinetic = (shape.conj() @ system.mass @ shape).real * abs(root) ** 2
+    whole = kinetic + (shape.conj() @ system.stiffness @ shape).real
+    return 0 if abs(whole) < _SIGNED * kinetic else int(np.sign(whole))
 
 
-def _name(system: LinearSpin, shape: Array, root: complex) -> str:
-    shares = np.abs(shape) * np.abs(system.M @ shape)
-    turns = system.attitude.places()
-    joints = [i for i in range(len(shape)) if i not in turns]
-    still = all(np.abs(shape[i]) < 1e-5 for i in joints)
-    if still and abs(root - 1j) < 1e-5:
-        return "stroboscopic"
+def _name(model: Model, system: GyricSystem, shape: Array, root: complex) -> str:
+    shares = np.abs(shape) * np.abs(system.mass @ shape)
     taking = [i for i in range(len(shape)) if shares[i] >= _TAKES_PART * shares.max()]
-    limbs = list(dict.fromkeys(_limb(system, system.coordinates[i]) for i in taking if i in joints))
-    ways = [system.coordinates[i] for i in taking if i in turns]
-    who = "–".join([*limbs, "body"]) if limbs else "–".join(ways)
+    limbs = [_limb(model, system.names[i]) for i in taking if i in system.joints]
+    ways = [system.names[i] for i in taking if i not in system.joints]
+    who = "–".join([*dict.fromkeys(limbs), "body"]) if limbs else "–".join(ways)
     return f"{who} {_motion(root)}"
 
 
 def _motion(root: complex) -> str:
+    way = int(np.sign(root.real))
     if abs(root.imag) < _SMALL:
-        return (
-            "divergence"
-            if root.real > _SMALL
-            else "convergence"
-            if root.real < -_SMALL
-            else "drift"
-        )
-    if root.real > _SMALL:
-        return "growing oscillation"
-    return "decaying oscillation" if root.real < -_SMALL else "oscillation"
+        return {1: "divergence", -1: "convergence", 0: "drift"}[way]
+    return {1: "growing oscillation", -1: "decaying oscillation", 0: "oscillation"}[way]
 
 
-def _limb(system: LinearSpin, coordinate: str) -> str:
+def _limb(model: Model, coordinate: str) -> str:
     """The body (or mirrored pair of bodies) that a joint coordinate moves, and how."""
-    model = system.spin.model
     how, plain = "", coordinate
-    found = re.match(r"(antisymmetric|symmetric) (.*)", coordinate)
-    if found:
-        how, plain = f"{found.group(1)} ", found.group(2)
-    from somersault.model._mirror import mirror_pairs
-
+    paired = re.match(r"(antisymmetric|symmetric) (.*)", coordinate)
+    if paired:
+        how, plain = f"{paired.group(1)} ", paired.group(2)
     speeds = [i for p in mirror_pairs(model) if p.name == plain for i in (p.left, p.right)]
     speeds = speeds or [model.speeds.index(plain)]
     owners = []

@@ -1,0 +1,197 @@
+"""The linear systems of many spins at once: arrays of poses, springs, dampers and bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from somersault._core.array import Array
+from somersault._core.checks import by_name
+from somersault._core.errors import SomersaultError
+from somersault.model import Model, load, spread
+from somersault.model import pose as posed
+from somersault.stability._coordinates import coordinates, locked_speeds
+from somersault.stability._gyric import GyricSystem
+from somersault.stability._principal import (
+    Axis,
+    axis_index,
+    or_somersault,
+    principal_axes,
+    require_free,
+    require_inertia,
+)
+from somersault.stability._springs import finite, strengths
+from somersault.stability._steady import composite_inertia, steady_matrices
+
+Values = Mapping[str, ArrayLike]
+_JOINT_KINDS = ("pose", "stiffness", "damping")
+_BODY_KINDS = ("mass", "com", "position", "inertia")
+_UNITS = {
+    "stiffness": "k/(Ω² I)", "damping": "b/(Ω I)", "mass": "kg", "com": "m", "position": "m",
+    "inertia": "kg m2",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Which spins of which model: everything but the quantities that are varied.
+
+    `fixed` has quantities by their full names ("pose.shoulder", "mass.body"), the model's default
+    axis of somersault stands for none, and `subsystem` keeps the part that a coordinate is in.
+    """
+
+    model: Model
+    fixed: dict[str, Any]
+    axis: Axis | str | int
+    lock: str | Iterable[str]
+    subsystem: str | None
+
+    def parts(self, varied: Values) -> list[GyricSystem]:
+        """The decoupled parts of the systems for arrays of quantities, which broadcast."""
+        system = _system(self.model, self.axis, {**self.fixed, **varied}, self.lock)
+        return system.parts(self.subsystem)
+
+    def shape(self, varied: Values) -> tuple[int, ...]:
+        """The shape that all quantities together have."""
+        return _shape({**self.fixed, **varied})
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """What a dataset says of the spins it is of."""
+        return {
+            "model": self.model.name,
+            "axis": str(self.axis),
+            "subsystem": self.subsystem or "all",
+        }
+
+
+def grid(
+    model: str | Model,
+    fixed: Values | None,
+    pose: Values | None,
+    stiffness: Values | None,
+    damping: Values | None,
+    axis: Axis | str | int | None,
+    lock: str | Iterable[str],
+    subsystem: str | None,
+) -> Grid:
+    """From the arguments that all public calls of this room share."""
+    model = load(model)
+    require_free(model)
+    quantities = by_name("fixed", fixed)
+    for kind, values in zip(_JOINT_KINDS, (pose, stiffness, damping), strict=True):
+        for joint, value in by_name(kind, values).items():
+            if f"{kind}.{joint}" in quantities:
+                raise SomersaultError(f"{kind} of {joint} is given twice; give it once")
+            quantities[f"{kind}.{joint}"] = value
+    if not isinstance(lock, str):
+        lock = tuple(lock) if isinstance(lock, Iterable) else lock
+    return Grid(model, quantities, or_somersault(model, axis), lock, subsystem)
+
+
+def row(what: str, given: Any) -> tuple[str, Array]:
+    """The name and the values of a quantity that is varied along a row."""
+    try:
+        name, values = given
+        return str(name), np.asarray(values, float)
+    except (TypeError, ValueError):
+        raise SomersaultError(
+            f"{what} is a name and values, ('pose.shoulder', [0, 1]), not {given!r}"
+        ) from None
+
+
+def unit(model: Model, name: str) -> str:
+    """Unit of a quantity's values."""
+    kind, _, rest = name.partition(".")
+    if kind != "pose":
+        return _UNITS[kind]
+    speeds = spread(model, {rest: 0}, mirrored=True)
+    slides = [joint.name for joint in model.joints if joint.kind == "slide"]
+    return "m" if any(name in slides for name in speeds) else "rad"
+
+
+def _system(
+    model: Model, axis: Axis | str | int, quantities: Values, lock: str | Iterable[str]
+) -> GyricSystem:
+    kinds = _sorted_kinds(model, quantities)
+    _shape(quantities)
+    q = posed(model, kinds["pose"])
+    names = tuple(kinds["body"])
+    values = _stacked([np.asarray(v, float) for v in kinds["body"].values()])
+    about = principal_axes(composite_inertia(model, q, names, values))
+    require_inertia(model, about.inertias)
+    index = _one_axis(model, about.inertias, axis)
+    steady = steady_matrices(model, q, about.axes[..., index], names, values)
+    _require_definite(model, steady.mass)
+    chosen = coordinates(model, index + 1, locked_speeds(model, lock))
+    mass, gyric, of_spin = (chosen.transformed(a) for a in steady.in_axes(about.axes))
+    none = np.zeros(len(model.speeds))
+    springs, dampers = (
+        chosen.of_joints(strengths(model, kind, kinds[kind], steady.outboard, none))
+        for kind in ("stiffness", "damping")
+    )
+    return GyricSystem(chosen.names, mass, gyric, dampers, of_spin + springs, chosen.attitude)
+
+
+def _shape(quantities: Values) -> tuple[int, ...]:
+    """The shape to which all quantities broadcast."""
+    shapes = {name: np.shape(value) for name, value in quantities.items()}
+    try:
+        return np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
+        raise SomersaultError(
+            f"these values do not go together: {listed}; give arrays of equal length, or of shapes "
+            "that broadcast"
+        ) from None
+
+
+def _require_definite(model: Model, mass: Array) -> None:
+    """Refuse bodies that no masses make: their kinetic energy could be negative."""
+    try:
+        np.linalg.cholesky(mass)
+    except np.linalg.LinAlgError:
+        raise SomersaultError(
+            f"somewhere in this chart {model.name} is no body, as its mass matrix is not positive; "
+            "narrow the values"
+        ) from None
+
+
+def _sorted_kinds(model: Model, quantities: Values) -> dict[str, dict[str, ArrayLike]]:
+    kinds: dict[str, dict[str, ArrayLike]] = {k: {} for k in (*_JOINT_KINDS, "body")}
+    for name, value in quantities.items():
+        kind, _, rest = name.partition(".")
+        if kind in _JOINT_KINDS and rest:
+            kinds[kind][rest] = value
+        elif kind in _BODY_KINDS and rest:
+            kinds["body"][name] = value
+        else:
+            raise SomersaultError(
+                f"{name!r} is no quantity of {model.name}; use pose.JOINT, stiffness.JOINT, "
+                "damping.JOINT, mass.BODY, com.BODY.1, position.BODY.1 or inertia.BODY.11"
+            )
+        numbers = finite(name, value)
+        least = {"mass": 1e-300, "damping": 0.0}.get(kind, -np.inf)
+        if np.any(numbers < least):
+            raise SomersaultError(f"{name} goes down to {numbers.min():g}; it must be positive")
+    return kinds
+
+
+def _stacked(values: Sequence[Array]) -> Array:
+    return np.stack(np.broadcast_arrays(*values), -1) if values else np.zeros(0)
+
+
+def _one_axis(model: Model, inertias: Array, axis: Axis | str | int) -> int:
+    if str(axis) in ("1", "2", "3"):
+        return int(axis) - 1
+    found = {axis_index(one, axis) for one in inertias.reshape(-1, 3)}
+    if len(found) > 1:
+        raise SomersaultError(
+            f"the {axis} axis of {model.name} is not the same one everywhere in this chart; give "
+            "axis 1, 2 or 3"
+        )
+    return found.pop()
