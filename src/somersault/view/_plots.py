@@ -25,14 +25,20 @@ def stability_chart(chart: xr.Dataset) -> Figure:
         axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
         whole = "" if chart.attrs["subsystem"] == "all" else f", part of {chart.attrs['subsystem']}"
         axes.set_title(f"Spins of {chart.attrs['model']} about axis {chart.attrs['axis']}{whole}")
-        _region(axes, x, y, chart.stable.values, BLUE, "stable")
+        _region(axes, x, y, chart.stable.values, BLUE, "stable", "nowhere stable")
         if "definite" in chart:
-            _region(axes, x, y, chart.definite.values, GREEN, "definite: survives damping")
+            survives, does_not = (
+                "definite: survives damping",
+                "nowhere definite: damping destroys it",
+            )
+            _region(axes, x, y, chart.definite.values, GREEN, survives, does_not)
         picture.draw_without_rendering()
     return picture
 
 
-def _region(axes: Any, x: Any, y: Any, inside: Any, color: str, name: str) -> None:
+def _region(
+    axes: Any, x: Any, y: Any, inside: Any, color: str, somewhere: str, nowhere: str
+) -> None:
     if inside.all():
         axes.set_facecolor("#dfe9f3")
     elif inside.any():
@@ -40,8 +46,7 @@ def _region(axes: Any, x: Any, y: Any, inside: Any, color: str, name: str) -> No
     column = int(np.argmax(inside.sum(0))) if inside.any() else len(x) // 2
     rows = np.flatnonzero(inside[:, column])
     row = rows[len(rows) // 2] if rows.size else len(y) // 2
-    text = name if rows.size else f"nowhere {name}"
-    label(axes, x[column], y[row], text, color, ha="center")
+    label(axes, x[column], y[row], somewhere if rows.size else nowhere, color, ha="center")
 
 
 def root_loci(found: xr.Dataset) -> Figure:
