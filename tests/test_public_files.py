@@ -7,12 +7,14 @@ for URDF, MuJoCo for MJCF.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
 import mujoco
 import numpy as np
 import pytest
+from _pytest.mark import ParameterSet
 from trees import assert_close
 
 import somersault as so
@@ -33,6 +35,18 @@ def files_of(package: str, ending: str) -> dict[str, Path]:
         return {}
     found = [Path(str(file.locate())).resolve() for file in files if file.name.endswith(ending)]
     return {"/".join(path.parts[-3:]): path for path in sorted(found)}
+
+
+LARGE = ("drosophila_fused.xml", "tiago_dual.urdf", "dog_v2/dog.xml")
+
+
+def read_of(files: dict[str, Path], refused: Callable[[str], bool]) -> list[ParameterSet]:
+    """The names of files that are read; the largest take some seconds to derive."""
+    return [
+        pytest.param(name, marks=[pytest.mark.slow] if name.endswith(LARGE) else [])
+        for name in files
+        if not refused(name)
+    ]
 
 
 def mass_matrix(model: Model, q: np.ndarray) -> np.ndarray:
@@ -74,7 +88,7 @@ def test_there_are_robots_to_read() -> None:
     assert len(ROBOTS) - len(REFUSED_ROBOTS) >= 66
 
 
-@pytest.mark.parametrize("name", [n for n in ROBOTS if Path(n).name not in REFUSED_ROBOTS])
+@pytest.mark.parametrize("name", read_of(ROBOTS, lambda n: Path(n).name in REFUSED_ROBOTS))
 def test_a_robot_has_pinocchios_mass_matrix(name: str) -> None:
     pin = pytest.importorskip("pinocchio")
     model = load(ROBOTS[name])
@@ -152,7 +166,7 @@ def reason(name: str) -> str | None:
     return next((why for end, why in REFUSED_WORLDS.items() if name.endswith(end)), None)
 
 
-@pytest.mark.parametrize("name", [n for n in WORLDS if reason(n) is None])
+@pytest.mark.parametrize("name", read_of(WORLDS, lambda n: reason(n) is not None))
 def test_a_world_has_mujocos_mass_matrix(name: str) -> None:
     model = load(WORLDS[name])
     m = mujoco.MjModel.from_xml_path(str(WORLDS[name]))
