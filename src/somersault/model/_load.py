@@ -33,11 +33,11 @@ def load(
     axes: Sequence[int] | None = None,
     base: Base | None = None,
 ) -> Model:
-    """A model, by the name of a shipped one or from an MJCF, URDF or bioMod file.
+    """A model, by the name of a shipped one or from an MJCF, URDF, bioMod or osim file.
 
-    The format follows the ending (.xml or .mjcf, .urdf, .bioMod), and of XML the root element.
-    What a file holds that has no part in flight is left out with a SomersaultWarning, and what
-    is strange in it read as its own format's programs read it, likewise.
+    The format follows the ending (.xml or .mjcf, .urdf, .bioMod, .osim), and of .xml the root
+    element. What a file holds that has no part in flight is left out with a SomersaultWarning,
+    and what is strange in it read as its own format's programs read it, likewise.
 
     Parameters
     ----------
@@ -147,7 +147,11 @@ def _read(path: Path, base: Base | None) -> Model:
         from somersault.model.read._mujoco import read_mjcf
 
         return read_mjcf(path, base)
+    if ending == ".osim":
+        from somersault.model.read._osim import read_osim
+
+        return read_osim(path, base)
     raise SomersaultError(
         f"{path.name} ends in {ending or 'nothing'!r}, which is no model format; "
-        "use .xml (MJCF), .urdf or .bioMod"
+        "use .xml (MJCF), .urdf, .bioMod or .osim"
     )

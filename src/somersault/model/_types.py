@@ -112,13 +112,28 @@ class Body:
     inertia_from: str = field(default="file", compare=False, repr=False)
 
 
+@dataclass(frozen=True, slots=True)
+class FileCoordinates:
+    """What recordings in the coordinates of a model's file say of the model.
+
+    `root` is the base as the file has it, on joints to the ground: bodies from the ground
+    outward, each the parent of the next, the base last; none where the file has a free joint or
+    nothing. `gears` has for coordinates that are no joint of the model the joint whose value they
+    decide: the joint named `leader` stands at `factor` times the coordinate plus `offset`.
+    """
+
+    root: tuple[Body, ...] = ()
+    gears: tuple[tuple[str, Follow], ...] = ()
+
+
 @dataclass(frozen=True)
 class Model:
     """Bodies in order, parents first. With a `free` base, body 0 is the base, in the air.
 
     `ignored` says what the file held that has no part in flight. `axes` are the base's axes
     about which it somersaults, tilts and twists: they decide what those angles mean, and nothing
-    else. Raises SomersaultError for anything that cannot be a body in the air (see `_check`).
+    else. `file_coordinates` is for reading recordings alone. Raises SomersaultError for anything
+    that cannot be a body in the air (see `_check`).
     """
 
     name: str
@@ -126,6 +141,7 @@ class Model:
     bodies: tuple[Body, ...]
     ignored: tuple[str, ...] = ()
     axes: Axes = AXES
+    file_coordinates: FileCoordinates = field(default=FileCoordinates(), compare=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "axes", as_axes(self.axes))

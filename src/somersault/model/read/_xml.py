@@ -7,9 +7,7 @@ blank line before the declaration, a comment that is not UTF-8) is mended before
 
 from __future__ import annotations
 
-import os
 import re
-import stat
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,6 +15,7 @@ from typing import Any
 from xml.parsers import expat
 
 from somersault._core.errors import SomersaultError
+from somersault._core.files import read_bytes
 
 MOST_BYTES = 50 * 2**20
 _MOST_ELEMENTS = 500_000
@@ -31,12 +30,14 @@ _MARKS = {b"\xff\xfe": "utf-16-le", b"\xfe\xff": "utf-16-be", b"\xef\xbb": "utf-
 
 @dataclass(slots=True)
 class Element:
-    """One element: its tag and attributes as written, its children, and the line it starts on."""
+    """One element: its tag and attributes as written, its children, the line it starts on, and
+    the text before its first child."""
 
     tag: str
     attributes: dict[str, str]
     line: int
     children: list[Element] = field(default_factory=list)
+    text: str = ""
 
     def all(self, tag: str) -> list[Element]:
         """The children of that tag, in order."""
@@ -45,6 +46,14 @@ class Element:
     def first(self, tag: str) -> Element | None:
         """The first child of that tag, if there is one."""
         return next(iter(self.all(tag)), None)
+
+    def below(self, *tags: str) -> list[Element]:
+        """The children of the first child of the first tag, of that one's first child of the
+        second tag, and so on; none where one is missing."""
+        at: Element | None = self
+        for tag in tags:
+            at = None if at is None else at.first(tag)
+        return [] if at is None else at.children
 
     def descendants(self) -> Iterator[Element]:
         """Every element below this one."""
@@ -55,8 +64,14 @@ class Element:
             waiting += element.children
 
 
-def read_xml(path: Path) -> Element:
+def read_xml(path: Path, latin: bool = False) -> Element:
     """The root element of a file, with all that is in it.
+
+    Parameters
+    ----------
+    path : Path
+    latin : bool, optional
+        Whether to take for Latin-1 what is not in the encoding that the file declares.
 
     Raises
     ------
@@ -64,7 +79,7 @@ def read_xml(path: Path) -> Element:
         For a file that cannot be read, is too large or too deep, is not XML, or declares
         entities.
     """
-    text = _text(path)
+    text = _text(path, latin)
     try:
         return _Tree(path.name).parse(text)
     except expat.ExpatError:
@@ -88,17 +103,14 @@ def _line_ends(match: re.Match[str]) -> str:
     return "\n" * match.group().count("\n")
 
 
-def _text(path: Path) -> str:
+def _text(path: Path, latin: bool = False) -> str:
     """The file as text without what stands before its first tag."""
-    return _decoded(path.name, _bytes(path)).lstrip("\ufeff \t\r\n\0")
+    return _decoded(path.name, _bytes(path), latin).lstrip("\ufeff \t\r\n\0")
 
 
 def _bytes(path: Path) -> bytes:
     try:
-        with path.open("rb") as file:
-            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-                raise SomersaultError(f"{path.name} is no ordinary file; give a model file")
-            data = file.read(MOST_BYTES + 1)
+        data = read_bytes(path, MOST_BYTES + 1)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise SomersaultError(
@@ -111,11 +123,11 @@ def _bytes(path: Path) -> bytes:
     return data
 
 
-def _decoded(name: str, data: bytes) -> str:
+def _decoded(name: str, data: bytes, latin: bool) -> str:
     declared = _DECLARED.match(data)
     encoding = declared.group(1).decode().lower() if declared else ""
     mark = _MARKS.get(data[:2], "")
-    tries = [mark] if mark else ["utf-8", *({encoding} & _ENCODINGS)]
+    tries = [mark] if mark else ["utf-8", *({encoding} & _ENCODINGS), *(["latin-1"] * latin)]
     for attempt in tries:
         for content in (data, _COMMENT_BYTES.sub(lambda c: b"\n" * c.group().count(b"\n"), data)):
             try:
@@ -133,9 +145,11 @@ class _Tree:
         self._root: Element | None = None
         self._open: list[Element] = []
         self._count = 0
+        self._texts: list[str] = []
         self._parser: Any = expat.ParserCreate()
         self._parser.StartElementHandler = self._start
         self._parser.EndElementHandler = self._end
+        self._parser.CharacterDataHandler = self._texts.append
         self._parser.EntityDeclHandler = self._entity
         self._parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
 
@@ -144,6 +158,7 @@ class _Tree:
             self._parser.Parse(text, True)  # a str: what it declares as its encoding is past
         finally:
             self._parser.StartElementHandler = self._parser.EndElementHandler = None
+            self._parser.CharacterDataHandler = None
             self._parser.EntityDeclHandler = None  # they and the parser would keep each other
         assert self._root is not None
         return self._root
@@ -156,6 +171,7 @@ class _Tree:
             raise SomersaultError(
                 f"{self._name}, line {line}: more than {most}, which no model has; check the file"
             )
+        self._flush()
         element = Element(tag, attributes, line)
         if self._open:
             self._open[-1].children.append(element)
@@ -164,7 +180,14 @@ class _Tree:
         self._open.append(element)
 
     def _end(self, tag: str) -> None:
+        self._flush()
         self._open.pop()
+
+    def _flush(self) -> None:
+        """Give the innermost open element the text since its tag, unless a child came between."""
+        if self._open and not self._open[-1].children:
+            self._open[-1].text = "".join(self._texts)
+        self._texts.clear()
 
     def _entity(self, name: str, *_: Any) -> None:
         raise SomersaultError(
