@@ -11,8 +11,8 @@ import somersault
 
 SOURCE = Path(somersault.__file__).parent
 ROOMS = [
-    "_core", "attitude", "simulation", "rigid", "model", "engine", "dynamics", "motion", "history",
-    "stability", "view", "flight", "ensembles", "spec", "thesis", "cli",
+    "_core", "spec", "attitude", "simulation", "rigid", "model", "engine", "dynamics", "motion",
+    "history", "stability", "view", "flight", "ensembles", "thesis", "cli",
 ]  # fmt: skip
 MOST_LINES = 420
 

@@ -14,7 +14,7 @@ from test_flight_mujoco import by_momentum, quintic
 
 import somersault as so
 from somersault.cli import main
-from somersault.spec import parse_ensemble
+from somersault.ensembles import parse_ensemble
 
 OUT, UP, DOWN = np.pi / 2, np.pi - 0.1, 0.1  # of an arm, away from hanging down
 TIMES = (0.1, 0.35)

@@ -112,6 +112,24 @@ def test_the_mirrored_joint_gets_the_mirrored_torque() -> None:
     assert np.ptp(left) > 0.05
 
 
+def test_numbers_of_a_torque_can_be_varied() -> None:
+    does = JointTakeoff.torque(torque=1.0, times=[0.0, 0.2], torques=[0.0, 4.0])
+    takeoff = Takeoff(spin=4.0, joints={"left_shoulder": does})
+    vary = {
+        "constant": so.Vary(sets="joints.left_shoulder.torque", samples=[1.0, -2.0]),
+        "late": so.Vary(adds_to="joints.left_shoulder.times.2", samples=[0.0, 0.1]),
+        "more": so.Vary(adds_to="joints.left_shoulder.torques.2", samples=[0.0, 1.0]),
+    }
+    options = {"size": 2, "report": ["twist", "left_shoulder"], "accuracy": 1e-10}
+    flown = so.ensemble("furrer", takeoff, 0.4, vary, **options).dataset
+    other = replace(does, torque=-2.0, times=[0.0, 0.3], torques=[0.0, 5.0])
+    for k, each in enumerate((does, other)):
+        alone = so.fly("furrer", replace(takeoff, joints={"left_shoulder": each}), 0.4)
+        assert float(flown["twist"][k]) == pytest.approx(alone.landing.twist, abs=1e-8)
+        angle = alone.landing.joints["left_shoulder"]
+        assert float(flown["left_shoulder"][k]) == pytest.approx(angle, abs=1e-8)
+
+
 # --------------------------------------------------------------------------------- coupled
 
 MOVE = {"times": [0.05, 0.3], "angles": [0.2, 1.3]}
@@ -242,6 +260,10 @@ def test_one_class_is_a_behaviour() -> None:
     assert flight.energy_drift < 1e-9
     assert flight.momentum_drift < 1e-12
     assert np.ptp(flight.spring_energy) > 1.0
+    vary = {"k": so.Vary(sets="joints.shoulder.cubic", values=[10.0, 25.0])}
+    many = so.ensemble("furrer", takeoff, 2.0, vary, report=["left_shoulder"], accuracy=1e-9)
+    last = float(many.dataset["left_shoulder"].sel(k=25.0).squeeze())
+    assert last == pytest.approx(flight.landing.joints["left_shoulder"], abs=1e-6)
 
 
 def test_what_a_behaviour_does_not_take_is_said() -> None:

@@ -17,8 +17,7 @@ import pytest
 import xarray as xr
 
 import somersault as so
-from somersault.ensembles import carried_out
-from somersault.spec import read_ensemble
+from somersault.ensembles import carried_out, read_ensemble
 
 SPEC = """
 model = "furrer"

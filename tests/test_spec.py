@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 import somersault as so
 from somersault import SomersaultError
 from somersault.cli import main
-from somersault.spec import parse_spec, read_spec
 
 LAYOUT = Path(__file__).parents[1] / "examples" / "layout.toml"
 CONTRACT = """
@@ -69,8 +68,7 @@ def test_the_example_is_eight_stable_somersaults(capsys: pytest.CaptureFixture) 
 
 
 def test_csv_has_a_row_a_sample(tmp_path: Path) -> None:
-    spec = read_spec(LAYOUT)
-    flight = so.fly(spec.model, spec.takeoff, spec.duration, samples=11)
+    flight = so.Maneuver.read(LAYOUT).fly(samples=11)
     flight.save(tmp_path / "f.csv")
     lines = (tmp_path / "f.csv").read_text().splitlines()
     assert len(lines) == 12
@@ -85,7 +83,7 @@ def test_a_model_file_is_found_beside_the_spec(tmp_path: Path) -> None:
     source = Path(so.__file__).parent / "model/shipped/book.xml"
     (tmp_path / "mine.xml").write_text(source.read_text())
     (tmp_path / "s.toml").write_text('model = "mine.xml"\n[takeoff]\nspin = 3.0\n')
-    assert read_spec(tmp_path / "s.toml").model == str(tmp_path / "mine.xml")
+    assert so.Maneuver.read(tmp_path / "s.toml").model.bodies == so.load("book").bodies
 
 
 BAD = {
@@ -145,7 +143,7 @@ def test_a_mistake_names_its_key(
 )
 def test_any_table_is_read_or_refused(given_: dict) -> None:
     try:
-        parse_spec(given_, Path())
+        so.Maneuver.parse(given_)
     except so.SomersaultError as mistake:
         assert "\n" not in str(mistake)
 
@@ -183,8 +181,7 @@ def test_a_joint_of_the_spec_goes_before_its_recording(
 ) -> None:
     own = f'[joints.{name}]\nmotion = "locked"\nangle = 1.5\n'
     (recording / "spec.toml").write_text(RECORDED + compliance + own)
-    spec = read_spec(recording / "spec.toml")
-    landed = so.fly(spec.model, spec.takeoff, spec.duration, accuracy=1e-6).landing.joints
+    landed = so.Maneuver.read(recording / "spec.toml").fly(accuracy=1e-6).landing.joints
     moved = {"left_elbow": 1.1, "right_elbow": 1.1, "left_hip_flexion": 0.05}
     for joint, angle in (moved | dict.fromkeys(locked, 1.5)).items():
         assert landed[joint] == pytest.approx(angle, abs=1e-5), joint
@@ -193,19 +190,19 @@ def test_a_joint_of_the_spec_goes_before_its_recording(
 def test_a_named_pose_and_what_there_is_instead(recording: Path) -> None:
     text = RECORDED + "[compliance]\nnatural_frequency = 60\npose = "
     (recording / "spec.toml").write_text(text + '"wrap"\n')
-    soft = read_spec(recording / "spec.toml").takeoff.joints["left_elbow"].stiffness
+    soft = so.Maneuver.read(recording / "spec.toml").takeoff.joints["left_elbow"].stiffness
     (recording / "spec.toml").write_text(text + '"wrapped"\n')
     with pytest.raises(so.SomersaultError, match=r"'following', 'layout', .*'wrap'"):
-        read_spec(recording / "spec.toml")
+        so.Maneuver.read(recording / "spec.toml")
     (recording / "spec.toml").write_text(text + "{elbow = 2.1}\n")  # what it hinges on is outboard
-    assert read_spec(recording / "spec.toml").takeoff.joints["left_elbow"].stiffness == soft
+    assert so.Maneuver.read(recording / "spec.toml").takeoff.joints["left_elbow"].stiffness == soft
 
 
 def test_a_pair_and_its_side_are_still_one_too_many(recording: Path) -> None:
     own = '[joints.elbow]\nmotion = "locked"\n[joints.left_elbow]\nmotion = "locked"\n'
     (recording / "spec.toml").write_text(RECORDED + own)
     with pytest.raises(so.SomersaultError, match="left_elbow is given twice"):
-        read_spec(recording / "spec.toml")
+        so.Maneuver.read(recording / "spec.toml")
 
 
 def test_an_off_nominal_start_is_that_of_python(tmp_path: Path) -> None:
@@ -224,8 +221,10 @@ def test_an_off_nominal_start_is_that_of_python(tmp_path: Path) -> None:
     """
     (tmp_path / "nominal.toml").write_text(text)
     (tmp_path / "off.toml").write_text(text + "[off_nominal]\ntilt = 0.05\n")
-    nominal, off = (read_spec(tmp_path / f"{name}.toml").takeoff for name in ("nominal", "off"))
+    nominal, off = (
+        so.Maneuver.read(tmp_path / f"{name}.toml").takeoff for name in ("nominal", "off")
+    )
     assert off == so.off_nominal("furrer", nominal, tilt=0.05)
     (tmp_path / "off.toml").write_text(text + "[off_nominal]\nlean = 0.05\n")
     with pytest.raises(SomersaultError, match=r"off_nominal\.lean"):
-        read_spec(tmp_path / "off.toml")
+        so.Maneuver.read(tmp_path / "off.toml")

@@ -60,8 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> None:
     """Fly what is left to fly, and print what it all adds up to."""
-    from somersault.ensembles import carried_out, summary
-    from somersault.spec import read_ensemble
+    from somersault.ensembles import carried_out, read_ensemble, summary
 
     if chosen.plot is not None:
         check_picture("--plot", chosen.plot)

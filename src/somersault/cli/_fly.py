@@ -44,14 +44,13 @@ def run(chosen: argparse.Namespace) -> None:
     """Fly, write the history, print how it ended."""
     from somersault._core.datasets import check_history_file
     from somersault._core.errors import SomersaultError
-    from somersault.flight import BROKEN, fly, why_broken
-    from somersault.spec import read_spec
+    from somersault.flight import BROKEN, Maneuver, why_broken
 
     if chosen.out is not None:
         check_history_file(chosen.out)
-    spec = read_spec(chosen.spec)
-    with warnings.catch_warnings(record=True):
-        flight = fly(spec.model, spec.takeoff, spec.duration, **spec.options)
+    maneuver = Maneuver.read(chosen.spec)
+    with warnings.catch_warnings(record=True):  # it is the error below
+        flight = maneuver.fly()
     if flight.ended in BROKEN:
         raise SomersaultError(
             f"the flight broke off at {flight.landing.time:g} s: {why_broken(flight)}"

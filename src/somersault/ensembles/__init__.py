@@ -6,12 +6,14 @@ from somersault.ensembles._ensemble import Ensemble, carried_out, ensemble
 from somersault.ensembles._landings import landing_derivatives, landing_map
 from somersault.ensembles._plan import Plan, plan
 from somersault.ensembles._sensitivity import quick_sensitivity, sensitivity
+from somersault.ensembles._spec import EnsembleSpec, parse_ensemble, read_ensemble
 from somersault.ensembles._summary import fraction, quantiles, summary, within
 from somersault.ensembles._vary import DISTRIBUTIONS, Vary
 
 __all__ = [
     "DISTRIBUTIONS",
     "Ensemble",
+    "EnsembleSpec",
     "Plan",
     "Vary",
     "carried_out",
@@ -21,9 +23,11 @@ __all__ = [
     "fraction",
     "landing_derivatives",
     "landing_map",
+    "parse_ensemble",
     "plan",
     "quantiles",
     "quick_sensitivity",
+    "read_ensemble",
     "sensitivity",
     "summary",
     "within",

@@ -24,6 +24,7 @@ from somersault.flight._principal import (
     rigid_continuation,
 )
 from somersault.flight._report import ENDINGS, Report, landing_error, landing_target
+from somersault.flight._spec import KEYS
 from somersault.flight._swing import (
     GRAVITY,
     Release,
@@ -41,6 +42,7 @@ __all__ = [
     "BROKEN",
     "ENDINGS",
     "GRAVITY",
+    "KEYS",
     "BallisticPath",
     "Batch",
     "Begun",

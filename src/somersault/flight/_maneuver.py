@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+import os
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -20,10 +22,12 @@ from somersault.flight._compliance import compliant, off_nominal, with_momentum
 from somersault.flight._flight import Flight
 from somersault.flight._flown import flown
 from somersault.flight._prescribed import prescribed
+from somersault.flight._spec import parsed, tables
 from somersault.flight._takeoff import Takeoff, require_takeoff
 from somersault.flight.behaviours import JointTakeoff, OnPath
 from somersault.model import Model, load
 from somersault.motion import Motion
+from somersault.spec import read_toml, write_toml
 
 Event = Literal["quarter twist"]
 STEPS = 100_000  # of one flight's integration
@@ -181,6 +185,39 @@ class Maneuver:
     def motion(self) -> Motion:
         """The motion of all joints that move through keyframes."""
         return Motion.moves(self.model, self.keyframes)
+
+    # ---------------------------------------------------------------------------- files
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str]) -> Maneuver:
+        """The maneuver in a TOML file, a SPEC as `somersault fly` takes it.
+
+        Parameters
+        ----------
+        path : str or path-like
+            Its model, and its recording if it has one, are looked for beside it.
+
+        Raises
+        ------
+        SomersaultError
+            Naming the key, for what does not fit.
+        """
+        file = Path(path)
+        return cls.parse(read_toml(file), file.parent)
+
+    @classmethod
+    def parse(cls, tables: Mapping[str, Any], beside: str | os.PathLike[str] = ".") -> Maneuver:
+        """The maneuver that the tables of a SPEC describe; files are looked for in a folder."""
+        return cls(**parsed(tables, Path(beside)))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the maneuver as a TOML file, whole or not at all.
+
+        It flies the same, bit for bit, when it is read again, and by `somersault fly`. A model that
+        does not ship is written beside it as MJCF.
+        """
+        file = Path(path)
+        write_toml(file, tables(self, file))
 
     # -------------------------------------------------------------------- other maneuvers
 

@@ -1,5 +1,6 @@
 """Bodies in the air: what they are made of, and where they are read from."""
 
+from somersault.model._formats import register_format
 from somersault.model._kinematics import (
     body_frames,
     body_velocities,
@@ -72,6 +73,7 @@ __all__ = [
     "pose",
     "pose_names",
     "reflection",
+    "register_format",
     "segment_momenta",
     "shipped",
     "sides",

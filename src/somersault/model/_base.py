@@ -16,7 +16,8 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
-from somersault.model._types import GROUND, IDENTITY, ZERO, Body, Joint, Matrix
+from somersault.attitude import AXES
+from somersault.model._types import GROUND, IDENTITY, ZERO, Body, Joint, Matrix, Model
 from somersault.model._weld import merge_welded
 
 Base = Literal["free", "fixed"]
@@ -68,6 +69,14 @@ def rooted(name: str, bodies: Sequence[Body], free: bool, base: Base | None = No
     if base == "fixed" and whole.free:
         return replace(whole, bodies=merge_welded(list(whole.bodies), free=False), free=False)
     return whole
+
+
+def rebased(model: Model, base: Base | None) -> Model:
+    """The same model on the base that is asked for; as it is where none is."""
+    if base is None or model.free == (base == "free"):
+        return model
+    on = rooted(model.name, model.bodies, model.free, base)
+    return replace(model, free=on.free, bodies=on.bodies, axes=model.axes if on.free else AXES)
 
 
 def _fixed(bodies: Sequence[Body], free: bool) -> list[Body]:

@@ -1,4 +1,4 @@
-"""From the name of a model to the model: shipped ones, and files in three formats."""
+"""From the name of a model to the model: shipped ones, and files."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ from typing import get_args
 
 from somersault._core.checks import one_of
 from somersault._core.errors import SomersaultError, SomersaultWarning
-from somersault.attitude import AXES, as_axes
-from somersault.model._base import Base, rooted
+from somersault.attitude import as_axes
+from somersault.model._base import Base, rebased
+from somersault.model._formats import endings, reader
 from somersault.model._mass import check_mass_matrix
 from somersault.model._strange import listed
 from somersault.model._types import Model
@@ -75,7 +76,7 @@ def load(
 
 def _found(source: str | os.PathLike[str] | Model, base: Base | None) -> Model:
     if isinstance(source, Model):
-        return _rebased(source, base)
+        return rebased(source, base)
     try:
         name = os.fspath(source)
         if not isinstance(name, str):
@@ -85,7 +86,7 @@ def _found(source: str | os.PathLike[str] | Model, base: Base | None) -> Model:
             f"{source!r} is no model; give a shipped model's name, a file, or a Model"
         ) from None
     if name in shipped():
-        return _rebased(_shipped(name), base)
+        return rebased(_shipped(name), base)
     path = Path(name)
     model = _read(path, base)
     if model.ignored:
@@ -108,14 +109,6 @@ def _note(path: Path, what: str) -> None:
     warnings.warn(f"{path.name}: {what}", SomersaultWarning, stacklevel=4)
 
 
-def _rebased(model: Model, base: Base | None) -> Model:
-    """The same model on the base that is asked for."""
-    if base is None or model.free == (base == "free"):
-        return model
-    on = rooted(model.name, model.bodies, model.free, base)
-    return replace(model, free=on.free, bodies=on.bodies, axes=model.axes if on.free else AXES)
-
-
 @cache
 def _shipped(name: str) -> Model:
     from somersault.model.read._mujoco import read_mjcf
@@ -132,26 +125,10 @@ def _read(path: Path, base: Base | None) -> Model:
                 f"no model is called {str(path)!r}: give a file, or one of {', '.join(shipped())}"
             )
         raise SomersaultError(f"there is no model file {str(path)!r}; check the path")
-    if ending == ".biomod":
-        from somersault.model.read._biomod import read_biomod
-
-        return _rebased(read_biomod(path), base)
-    if ending in (".xml", ".mjcf", ".urdf"):
-        from somersault.model.read._xml import root_tag
-
-        urdf = root_tag(path) == "robot" or (ending == ".urdf" and root_tag(path) != "mujoco")
-        if urdf:
-            from somersault.model.read._urdf import read_urdf
-
-            return read_urdf(path, base)
-        from somersault.model.read._mujoco import read_mjcf
-
-        return read_mjcf(path, base)
-    if ending == ".osim":
-        from somersault.model.read._osim import read_osim
-
-        return read_osim(path, base)
-    raise SomersaultError(
-        f"{path.name} ends in {ending or 'nothing'!r}, which is no model format; "
-        "use .xml (MJCF), .urdf, .bioMod or .osim"
-    )
+    read = reader(ending)
+    if read is None:
+        raise SomersaultError(
+            f"{path.name} ends in {ending or 'nothing'!r}, which is no model format; use "
+            f"{', '.join(endings())}"
+        )
+    return read(path, base)

@@ -1,13 +1,24 @@
-"""Everything that is read from TOML."""
+"""TOML files: read into frozen dataclasses, and written from them."""
 
-from somersault.spec._ensemble import EnsembleSpec, parse_ensemble, read_ensemble
-from somersault.spec._flight import FlightSpec, parse_spec, read_spec
+from somersault.spec._tables import (
+    Misplaced,
+    Unfit,
+    plain,
+    read_as,
+    structured,
+    structured_within,
+    written_as,
+)
+from somersault.spec._toml import read_toml, write_toml
 
 __all__ = [
-    "EnsembleSpec",
-    "FlightSpec",
-    "parse_ensemble",
-    "parse_spec",
-    "read_ensemble",
-    "read_spec",
+    "Misplaced",
+    "Unfit",
+    "plain",
+    "read_as",
+    "read_toml",
+    "structured",
+    "structured_within",
+    "write_toml",
+    "written_as",
 ]

@@ -1,6 +1,6 @@
 """The thesis of Playter (1994), figure by figure: pictures, and claims that are checked."""
 
-from somersault.thesis._claims import Claim
+from somersault.thesis._claims import Claim, number, statement
 from somersault.thesis._entries import Entry, Result, Table
 from somersault.thesis._errata import ERRATA, Erratum
 from somersault.thesis._page import verdict
@@ -15,6 +15,8 @@ __all__ = [
     "Erratum",
     "Result",
     "Table",
+    "number",
     "reproduce",
+    "statement",
     "verdict",
 ]

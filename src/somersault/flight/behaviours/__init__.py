@@ -2,7 +2,14 @@
 
 from somersault.flight.behaviours._as_modelled import AsModelled
 from somersault.flight.behaviours._begin import begin
-from somersault.flight.behaviours._behaviour import Here, JointPlan, JointTakeoff, Known, kinds
+from somersault.flight.behaviours._behaviour import (
+    Angle,
+    Here,
+    JointPlan,
+    JointTakeoff,
+    Known,
+    kinds,
+)
 from somersault.flight.behaviours._compliant import Compliant, softened
 from somersault.flight.behaviours._coupled import Coupled, check_coupled, leaders
 from somersault.flight.behaviours._declared import declared, quantity, side_by_side
@@ -14,6 +21,7 @@ from somersault.flight.behaviours._sprung import Sprung
 from somersault.flight.behaviours._torque import Torque
 
 __all__ = [
+    "Angle",
     "AsModelled",
     "Compliant",
     "Coupled",

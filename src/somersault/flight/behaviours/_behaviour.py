@@ -7,7 +7,7 @@ which arrays go into them. Nothing else in the package knows which behaviours th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
@@ -22,6 +22,8 @@ from somersault.model import LIMIT_SLACK, Joint, Model
 from somersault.motion import Path
 
 Self = TypeVar("Self", bound="JointTakeoff")
+Angle = float | Sequence[float] | None
+"""Of a joint: a number, or three for a ball."""
 
 
 class _Registry(type):
@@ -34,10 +36,7 @@ class _Registry(type):
         if cls._root():
             motion, *rest = given or (named.pop("motion", None),)
             return _class(motion)(*rest, **named)
-        for key in [key for key in named if key not in cls._keys()]:
-            if not (key in _every_key() and _nothing(named[key])):
-                raise SomersaultError(_refusal(cls, key))
-            del named[key]
+        named = cls.keys_of(named)
         if len(given) > len(cls._keys()):
             raise SomersaultError(f"a joint that is {cls._called()} takes {_listed(cls._keys())}")
         return super().__call__(*given, **named)
@@ -48,11 +47,27 @@ class _Registry(type):
         known = "" if name.startswith("_") else f"; behaviours are {_listed(_names())}"
         raise AttributeError(f"{cls.__name__} has no {name!r}{known}")
 
+    def kind_of(cls, motion: str | None) -> type[JointTakeoff]:
+        """The behaviour of a name; SomersaultError if there is none."""
+        return _class(motion)
+
+    def keys_of(cls, given: Mapping[str, Any]) -> dict[str, Any]:
+        """Those of some numbers by name that this behaviour has.
+
+        What it does not have may be nothing (0, false, none), and is left out; SomersaultError
+        for anything else.
+        """
+        for key in given:
+            if key not in cls._keys() and not (key in _every_key() and _nothing(given[key])):
+                raise SomersaultError(_refusal(cls, key))
+        return {key: value for key, value in given.items() if key in cls._keys()}
+
     def _root(cls) -> bool:
         return cls.__mro__[1] is object  # `JointTakeoff` itself
 
     def _keys(cls) -> list[str]:
-        return list(getattr(cls, "__dataclass_fields__", ()))
+        every = getattr(cls, "__dataclass_fields__", {})
+        return [name for name in every if name not in JointTakeoff.__annotations__]
 
     def _called(cls) -> str:
         return cls.motion or "as modelled"
@@ -143,6 +158,14 @@ class JointTakeoff(metaclass=_Registry):
         if motion is not None:
             cls.motion = motion
             _Registry.classes[motion] = cls
+
+    def standard(self) -> dict[str, Any]:
+        """Its fields by name, and what each is where nothing is given."""
+        return {f.name: f.default for f in fields(self)}
+
+    def is_named(self) -> bool:
+        """Whether it has a name of its own, and is not what the model says."""
+        return self.motion in _names()
 
     # -------------------------------------------------------------- from what was asked for
 

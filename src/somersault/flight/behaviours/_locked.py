@@ -8,7 +8,7 @@ from typing import Any
 from somersault._core.array import Array
 from somersault.flight._values import Values
 from somersault.flight.behaviours import _declared
-from somersault.flight.behaviours._behaviour import Here, JointTakeoff, Known
+from somersault.flight.behaviours._behaviour import Angle, Here, JointTakeoff, Known
 from somersault.flight.behaviours._moving import standing, takeoff_angle
 from somersault.model import Joint
 
@@ -17,7 +17,7 @@ from somersault.model import Joint
 class Locked(JointTakeoff, motion="locked"):
     """A joint that holds its `angle` (rad, m; a rotation vector for a ball)."""
 
-    angle: Any = _declared.angle()
+    angle: Angle = _declared.angle()
 
     def settled(self, joint: Joint) -> JointTakeoff:
         plan = self._checked(joint)

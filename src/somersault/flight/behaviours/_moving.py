@@ -13,7 +13,7 @@ from somersault._core.errors import SomersaultError
 from somersault.dynamics import spring_torques
 from somersault.flight._values import Name, Values
 from somersault.flight.behaviours import _declared
-from somersault.flight.behaviours._behaviour import Here, JointTakeoff, check_limits
+from somersault.flight.behaviours._behaviour import Angle, Here, JointTakeoff, check_limits
 from somersault.model import Joint
 
 _STOPS = ("stop_stiffness", "stop_damping")
@@ -81,8 +81,8 @@ class Moving(Stopped):
     Its `pretension` (N m, N) is a constant torque. The damper is the model's unless it is given.
     """
 
-    angle: Any = _declared.angle()
-    rate: Any = _declared.rate()
+    angle: Angle = _declared.angle()
+    rate: Angle = _declared.rate()
     damping: float | None = _declared.damping()
     pretension: float = _declared.torque()
 
@@ -122,6 +122,9 @@ class Moving(Stopped):
             here.joint, here.q, here.u, n.get("stiffness", 0.0), n.get("rest", 0.0), n["damping"]
         )
         return [load + n["pretension"] for load in acting]
+
+    def energy(self, joint: Joint, q: Array) -> Array | float:
+        return -self.pretension * q[..., 0] if self.pretension else 0.0
 
     @property
     def conservative(self) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
@@ -49,7 +50,8 @@ class Sprung(Moving, motion="sprung"):
         plan = super().settled(joint)
         assert isinstance(plan, Sprung)
         stiffness = joint.stiffness if plan.stiffness is None else plan.stiffness
-        rest = plan.angle if plan.hold else joint.rest if plan.rest is None else plan.rest
+        at: Any = plan.angle
+        rest = at if plan.hold else joint.rest if plan.rest is None else plan.rest
         return replace(plan, stiffness=stiffness, rest=rest)
 
     def scaled(self, stiffness: float, damping: float) -> Sprung:

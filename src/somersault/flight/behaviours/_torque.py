@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path as File
 from typing import Any, ClassVar
 
 import numpy as np
@@ -41,7 +40,7 @@ class Torque(Moving, motion="torque"):
     times: Sequence[float] = _declared.quantity("s", default=(), row=True)
     torques: Sequence[float] = _declared.quantity("N m", "N", default=(), row=True, image="turned")
     between: str = field(default="straight", kw_only=True)
-    file: str | File | None = field(default=None, kw_only=True, metadata={"file": True})
+    file: str | None = field(default=None, kw_only=True, metadata={"file": True})
     column: str | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:

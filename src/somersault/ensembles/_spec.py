@@ -1,0 +1,130 @@
+"""Ensembles of flights described in a TOML file: a flight's SPEC, and what varies."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, get_type_hints
+
+from somersault._core.errors import SomersaultError
+from somersault.ensembles._ensemble import plan
+from somersault.ensembles._plan import Plan
+from somersault.ensembles._vary import Vary
+from somersault.flight import KEYS, Maneuver, Report, flights
+from somersault.spec import Unfit, read_as, read_toml, structured, structured_within
+
+_ACCURACY = 1e-7
+_HINTS = get_type_hints(Vary)
+
+
+@dataclass(frozen=True)
+class Sample:
+    """[sample]: how many are drawn, and how."""
+
+    size: int | None = None
+    seed: int = 0
+    sequence: str = "random"
+
+
+@dataclass(frozen=True)
+class Reported:
+    """[report]: what is reported of each flight, as in `Report`."""
+
+    quantities: tuple[str, ...] | None = None
+    extremes: tuple[str, ...] = ()
+    history: tuple[str, ...] = ()
+    samples: int = 0
+
+
+@dataclass(frozen=True)
+class Tables:
+    """The tables that an ensemble's SPEC has besides those of a flight."""
+
+    vary: Mapping[str, Vary] | None = None
+    sample: Sample = field(default_factory=Sample)
+    report: Reported = field(default_factory=Reported)
+    target: Mapping[str, float] = field(default_factory=dict)
+
+
+_TABLES = tuple(Tables.__dataclass_fields__)
+
+
+@dataclass(frozen=True)
+class EnsembleSpec:
+    """What a SPEC file asks for; `tolerance` of landings, if it gives one.
+
+    `quantities` are what is reported of each flight's end.
+    """
+
+    plan: Plan
+    tolerance: float | None
+    quantities: tuple[str, ...]
+
+
+def read_ensemble(path: Path) -> EnsembleSpec:
+    """The ensemble in a TOML file; SomersaultError, naming the key, for what does not fit."""
+    return parse_ensemble(read_toml(path), path.parent)
+
+
+def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
+    """The ensemble in a SPEC's tables."""
+    for key in _TABLES:
+        if not isinstance(given.get(key, {}), Mapping):
+            raise SomersaultError(f"{key} must be a table; write [{key}]")
+    if "vary" in given and not given["vary"]:
+        raise SomersaultError("vary is empty; say what varies, [vary.NAME], or leave it out")
+    if "samples" in given:
+        raise SomersaultError("samples is no key of an ensemble's SPEC; histories are in [report]")
+    known = [*(key for key in KEYS if key != "samples"), *_TABLES]
+    for key in given:
+        if key not in known:
+            raise SomersaultError(
+                f"{key} is no key of an ensemble's SPEC; here it takes {', '.join(known)}"
+            )
+    flown = Maneuver.parse({k: v for k, v in given.items() if k not in _TABLES}, beside)
+    keys = structured({k: v for k, v in given.items() if k in _TABLES}, Tables)
+    target = dict(keys.target)
+    tolerance = target.pop("tolerance", None)
+    if tolerance is not None and not (tolerance > 0 and target):
+        raise SomersaultError(
+            "target.tolerance must be a positive number, together with angles to land at"
+        )
+    default = Report.quantities + (("landing_error",) if target else ())
+    quantities = default if keys.report.quantities is None else keys.report.quantities
+    reported = Report(quantities, keys.report.extremes, keys.report.history, keys.report.samples)
+    if tolerance is not None and "landing_error" not in quantities:
+        raise SomersaultError("target.tolerance needs landing_error among report.quantities")
+    many = flights(
+        flown.model, flown.takeoff, flown.duration, report=reported, against=target,
+        accuracy=flown.accuracy if "accuracy" in given else _ACCURACY,
+        until=flown.until, steps=flown.steps,
+    )  # fmt: skip
+    sample = keys.sample
+    planned = plan(many, dict(keys.vary or {}), sample.size, sample.seed, sample.sequence)
+    return EnsembleSpec(planned, tolerance, reported.quantities)
+
+
+# ------------------------------------------------------------------------ kinds of value
+
+
+def _names(value: Any, _: Any) -> Any:
+    texts = [value] if isinstance(value, str) else value
+    if not isinstance(texts, list | tuple) or not all(isinstance(t, str) for t in texts):
+        raise Unfit("a text or a list of texts", value)
+    return value
+
+
+def _grid(value: Any, _: Any) -> Any:
+    if not isinstance(value, list | Mapping):
+        raise Unfit("a list of numbers, or {from, to, count}", value)
+    return value
+
+
+def _row(value: Any, _: Any) -> Any:
+    return structured_within(value, Sequence[float])
+
+
+read_as(_HINTS["sets"], _names)
+read_as(_HINTS["values"], _grid)
+read_as(_HINTS["samples"], _row)

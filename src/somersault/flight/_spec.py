@@ -1,0 +1,217 @@
+"""A maneuver as a TOML file: what its keys mean, and how they are written.
+
+Reading gives the fields of a `Maneuver`, writing takes one; neither needs to know more of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from somersault._core.errors import SomersaultError
+from somersault.flight._spec_motion import Compliance, OffNominal, Recording
+from somersault.flight._takeoff import Takeoff
+from somersault.flight.behaviours import Angle, JointTakeoff
+from somersault.model import Model, load, shipped, write_mjcf
+from somersault.motion import Path as Quintics
+from somersault.spec import (
+    Misplaced,
+    Unfit,
+    plain,
+    read_as,
+    structured,
+    structured_within,
+    written_as,
+)
+
+Samples = int | Sequence[float] | None
+_AXES = "1, 2 and 3 in some order (the body's axes of somersault, tilt and twist)"
+
+
+@dataclass(frozen=True)
+class Keys:
+    """The keys of a SPEC of a flight; what is None is as `Maneuver` has it by default."""
+
+    model: str
+    axes: tuple[int, ...] | None = None
+    duration: float | None = None
+    gravity: Sequence[float] | None = None
+    accuracy: float | None = None
+    samples: Samples = None
+    steps: int | None = None
+    until: str | None = None
+    takeoff: Takeoff = field(default_factory=Takeoff)
+    joints: Mapping[str, JointTakeoff] = field(default_factory=dict)
+    motion: Recording | None = None
+    compliance: Compliance | None = None
+    off_nominal: OffNominal | None = None
+
+
+_OPTIONS = ("duration", "gravity", "accuracy", "samples", "steps", "until")
+KEYS = tuple(Keys.__dataclass_fields__)
+
+
+def parsed(given: Mapping[str, Any], beside: Path) -> dict[str, Any]:
+    """The fields of the maneuver that a SPEC's tables describe.
+
+    Files are looked for beside the SPEC. What [joints] says overrides the recording of [motion].
+
+    Raises
+    ------
+    SomersaultError
+        Naming the key, for what does not fit.
+    """
+    keys = structured(_found(given, beside), Keys)
+    body = load(keys.model, keys.axes)
+    joints = dict(keys.joints)
+    if keys.motion is not None:
+        joints = keys.motion.joints(body, keys.duration or 1.0, joints)
+    takeoff = replace(keys.takeoff, joints=joints)
+    for change in (keys.compliance, keys.off_nominal):
+        if change is not None:
+            takeoff = change.applied(body, takeoff)
+    options = {name: getattr(keys, name) for name in _OPTIONS}
+    return {
+        "model": body, "takeoff": takeoff,
+        **{name: value for name, value in options.items() if value is not None},
+    }  # fmt: skip
+
+
+def _found(given: Mapping[str, Any], beside: Path) -> dict[str, Any]:
+    """The tables with their files beside the SPEC."""
+    tables = dict(given)
+    name = tables.get("model")
+    if isinstance(name, str) and Path(name).suffix and (beside / name).is_file():
+        tables["model"] = str(beside / name)
+    if isinstance(tables.get("takeoff"), Mapping) and "joints" in tables["takeoff"]:
+        raise SomersaultError("takeoff.joints is no key of a SPEC; write [joints.NAME]")
+    joints = tables.get("joints")
+    if isinstance(joints, Mapping):
+        tables["joints"] = {name: _beside(joint, beside) for name, joint in joints.items()}
+    if "motion" in tables:
+        tables["motion"] = _beside(tables["motion"], beside)
+    return tables
+
+
+def _beside(table: Any, beside: Path) -> Any:
+    if isinstance(table, Mapping) and isinstance(table.get("file"), str):
+        return {**table, "file": str(beside / table["file"])}
+    return table
+
+
+# --------------------------------------------------------------------------------- writing
+
+
+def tables(maneuver: Any, path: Path) -> dict[str, Any]:
+    """A maneuver as the tables of a SPEC at `path`.
+
+    A model that does not ship is written beside it, as MJCF.
+    """
+    model: Model = maneuver.model
+    result: dict[str, Any] = {"model": _model_name(model, path)}
+    if tuple(model.axes) != (2, 1, 3):
+        result["axes"] = list(model.axes)
+    result |= {k: v for k, v in plain(maneuver).items() if k in _OPTIONS}
+    takeoff = plain(maneuver.takeoff)
+    joints = takeoff.pop("joints", {})
+    result["takeoff"] = takeoff
+    result["joints"] = joints
+    return {name: value for name, value in result.items() if not isinstance(value, dict) or value}
+
+
+def _model_name(model: Model, path: Path) -> str:
+    if model.name in shipped() and load(model.name, model.axes) == model:
+        return model.name
+    beside = path.with_suffix(".xml")
+    write_mjcf(model, beside)
+    return beside.name
+
+
+# ------------------------------------------------------------------------ kinds of value
+
+
+def _joint(table: Any, _: Any) -> JointTakeoff:
+    if not isinstance(table, Mapping):
+        raise Unfit("a table", table)
+    given = dict(table)
+    motion = given.pop("motion", None)
+    if motion is not None and not isinstance(motion, str):
+        raise Unfit("the name of a motion", motion)
+    kind = JointTakeoff.kind_of(motion)
+    try:
+        keys = kind.keys_of(given)
+    except SomersaultError as mistake:
+        raise Misplaced(str(mistake)) from None
+    return structured_within(keys, kind)
+
+
+def _joint_table(joint: JointTakeoff) -> dict[str, Any]:
+    table = {
+        one: plain(getattr(joint, one))
+        for one, standard in joint.standard().items()
+        if not _same(getattr(joint, one), standard)
+    }
+    return {"motion": joint.motion, **table} if joint.is_named() else table
+
+
+def _same(value: Any, standard: Any) -> bool:
+    if value is standard:
+        return True
+    if value is None or standard is None:
+        return False
+    return bool(np.array_equal(value, standard))
+
+
+def _angle(value: Any, _: Any) -> Any:
+    one = isinstance(value, int | float) and not isinstance(value, bool)
+    many = isinstance(value, list | tuple) and all(
+        isinstance(x, int | float) and not isinstance(x, bool) for x in value
+    )
+    if value is not None and not one and not many:
+        raise Unfit("a number, or three for a ball", value)
+    return value
+
+
+def _samples(value: Any, _: Any) -> Any:
+    if isinstance(value, list):
+        return structured_within(value, Sequence[float])
+    return None if value is None else structured_within(value, int)
+
+
+def _body_axes(value: Any, _: Any) -> tuple[int, ...]:
+    whole = isinstance(value, list) and all(type(item) is int for item in value)
+    if not whole or sorted(value) != [1, 2, 3]:
+        raise Unfit(_AXES, value)
+    return tuple(value)
+
+
+def _quintics(table: Any, _: Any) -> Quintics:
+    try:
+        knots = np.array(table["knots"], float)
+        coefficients = np.array(table["coefficients"], float)
+        first, last = table.get("known", (-np.inf, np.inf))
+    except (KeyError, TypeError, ValueError):
+        raise Unfit("a table of knots (s) and coefficients", table) from None
+    if knots.ndim != 1 or not knots.size or coefficients.shape != (len(knots) + 1, 6):
+        raise Unfit("a table of K knots (s) and K + 1 rows of 6 coefficients", table)
+    return Quintics(knots, coefficients, (float(first), float(last)))
+
+
+def _quintics_table(path: Quintics) -> dict[str, Any]:
+    table = {"knots": path.knots.tolist(), "coefficients": path.coefficients.tolist()}
+    if np.all(np.isfinite(path.known)):
+        table["known"] = list(path.known)
+    return table
+
+
+read_as(JointTakeoff, _joint)
+read_as(Angle, _angle)
+read_as(Samples, _samples)
+read_as(tuple[int, ...], _body_axes)
+read_as(Quintics, _quintics)
+written_as(JointTakeoff, _joint_table)
+written_as(Quintics, _quintics_table)
