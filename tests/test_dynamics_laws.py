@@ -345,3 +345,30 @@ def test_linear_velocity_does_not_enter() -> None:
     faster = state.v + np.array([0, 0, 0, 30.0, -20.0, 9.0] + [0.0] * (len(state.v) - 6))
     still = equations.forward_dynamics(state.q, state.v, state.torques)
     np.testing.assert_array_equal(equations.forward_dynamics(state.q, faster, state.torques), still)
+
+
+# ---------------------------------------------------------------------------------- mistakes
+
+
+@pytest.mark.parametrize(
+    ("call", "says"),
+    [
+        (lambda e: Equations("furrer", ["mass.elbow"]), "no parameter 'mass.elbow'"),
+        (lambda e: e.expression("jerk"), "no quantity is called 'jerk'"),
+        (lambda e: e.derivative("inertia", "v"), "inertia does not depend on 'v'; it takes q"),
+        (lambda e: e.momentum(np.zeros(3), np.zeros(8)), r"momentum: q has shape \(3,\)"),
+        (lambda e: e.momentum("ab", np.zeros(8)), "momentum: q must be numbers"),
+        (lambda e: e.momentum(np.zeros((2, 2)), np.zeros((3, 8))), r"q \(2, 2\), v \(3, 8\)"),
+        (lambda e: e.evaluate(e.expression("inertia"), v=0.0), "inertia takes q, parameters, and"),
+        (lambda e: tree(1, free=False).inertia(np.zeros(9)), "has a fixed base"),
+    ],
+)
+def test_mistakes_say_what_is_wrong(call: Any, says: str) -> None:
+    with pytest.raises(SomersaultError, match=says):
+        call(Equations("furrer"))
+
+
+def test_a_body_without_joints_has_nothing_outboard() -> None:
+    book = Equations("book")
+    assert book.outboard_inertia(np.empty((4, 0))).shape == (4, 0)
+    assert book.forward_dynamics([], np.zeros((4, 6))).shape == (4, 6)

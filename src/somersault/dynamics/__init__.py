@@ -1,28 +1,43 @@
-"""Equations of motion: derived symbolically from a model, compiled, printed."""
+"""Equations of motion: derived symbolically from a model, compiled, printed.
 
-from somersault.dynamics._composite import outboard_inertia
-from somersault.dynamics._equations import Equations, Expression
-from somersault.dynamics._motion import place
-from somersault.dynamics._newton_euler import inverse_dynamics
+`Equations` are a model's, for arrays of samples. What they are made of is here as well, written
+over symbols: the links of a model, their placements and the algorithms, for whoever derives the
+equations of something else. `vectors` has the arithmetic of three-vectors of symbols.
+"""
+
+from somersault.dynamics._articulated import forward_dynamics
+from somersault.dynamics._composite import (
+    Composite,
+    composite_bodies,
+    mass_matrix,
+    outboard_inertia,
+)
+from somersault.dynamics._equations import Equations
+from somersault.dynamics._motion import placements
+from somersault.dynamics._newton_euler import Momentum, inverse_dynamics, momentum
+from somersault.dynamics._parameters import parameter_values
 from somersault.dynamics._printing import c_code, latex
 from somersault.dynamics._springs import spring_torques
-from somersault.dynamics._tree import parameter_names, parameter_value
-from somersault.dynamics._vector import Vec, cross, scale, vadd, vsub
+from somersault.dynamics._symbolic import Expression
+from somersault.dynamics._tree import Link, Tree, link_tree
 
 __all__ = [
+    "Composite",
     "Equations",
     "Expression",
-    "Vec",
+    "Link",
+    "Momentum",
+    "Tree",
     "c_code",
-    "cross",
+    "composite_bodies",
+    "forward_dynamics",
     "inverse_dynamics",
     "latex",
+    "link_tree",
+    "mass_matrix",
+    "momentum",
     "outboard_inertia",
-    "parameter_names",
-    "parameter_value",
-    "place",
-    "scale",
+    "parameter_values",
+    "placements",
     "spring_torques",
-    "vadd",
-    "vsub",
 ]

@@ -15,9 +15,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from somersault.dynamics._motion import Placed, Rates, joint_vector, place, rates
+from somersault.dynamics._motion import Placed, Rates, joint_vector, placements, rates
 from somersault.dynamics._tree import Link, Tree
-from somersault.dynamics._vector import (
+from somersault.dynamics.vectors import (
     Mat,
     Scalar,
     Vec,
@@ -76,7 +76,7 @@ def forward_dynamics(
     joint speeds that are prescribed, by place; a ball is driven in all three or in none.
     """
     driven = driven or {}
-    placed = place(tree, q)
+    placed = placements(tree, q)
     moving = [
         _driven(link, motion, driven)
         for link, motion in zip(tree.links, rates(placed, omega, speeds), strict=True)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from somersault.dynamics._motion import Placed, place
+from somersault.dynamics._motion import Placed, placements
 from somersault.dynamics._tree import Link, Tree
-from somersault.dynamics._vector import (
+from somersault.dynamics.vectors import (
     Mat,
     Scalar,
     Vec,
@@ -49,7 +49,7 @@ class Composite:
         return moment, vadd(scale(self.mass, a), cross(alpha, self.first))
 
 
-def composites(tree: Tree, placed: Sequence[Placed]) -> list[Composite]:
+def composite_bodies(tree: Tree, placed: Sequence[Placed]) -> list[Composite]:
     """Each link with everything outboard of it, in the link's axes."""
     result = [
         Composite(
@@ -97,7 +97,7 @@ def outboard_inertia(tree: Tree, placed: Sequence[Placed]) -> list[Scalar]:
     the moments about its body's axes.
     """
     result: list[Scalar] = []
-    for link, whole in zip(tree.links, composites(tree, placed), strict=True):
+    for link, whole in zip(tree.links, composite_bodies(tree, placed), strict=True):
         if link.joint is None:
             continue
         if link.joint.kind == "slide":
@@ -114,8 +114,8 @@ def mass_matrix(tree: Tree, q: Sequence[Scalar]) -> Mat:
 
     By composite bodies (Walker & Orin 1982). Without a free base, of the joint speeds alone.
     """
-    placed = place(tree, q)
-    wholes = composites(tree, placed)
+    placed = placements(tree, q)
+    wholes = composite_bodies(tree, placed)
     count = sum(link.joint.speeds for link in tree.links if link.joint is not None)
     ahead = 6 if tree.free else 0
     matrix: Mat = [[0.0] * (ahead + count) for _ in range(ahead + count)]

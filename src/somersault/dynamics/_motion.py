@@ -10,7 +10,7 @@ import casadi as ca
 
 from somersault.dynamics._tree import Link, Tree
 from somersault.dynamics._turn import Turn
-from somersault.dynamics._vector import Mat, Scalar, Vec, add, cross, mul, sub, vadd
+from somersault.dynamics.vectors import Mat, Scalar, Vec, add, cross, mul, sub, vadd
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Placed:
     position: Vec
 
 
-def place(tree: Tree, q: Sequence[Scalar]) -> list[Placed]:
+def placements(tree: Tree, q: Sequence[Scalar]) -> list[Placed]:
     """Every link's turn and position at the joint coordinates q."""
     return [_placed(link, q) for link in tree.links]
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from somersault.dynamics._composite import composites
-from somersault.dynamics._motion import Placed, joint_vector, place, rates
+from somersault.dynamics._composite import composite_bodies
+from somersault.dynamics._motion import Placed, joint_vector, placements, rates
 from somersault.dynamics._tree import Link, Tree
-from somersault.dynamics._vector import (
+from somersault.dynamics.vectors import (
     Scalar,
     Vec,
     add,
@@ -44,7 +44,7 @@ def inverse_dynamics(
     What must act for the base to have the angular acceleration `alpha` and its centre of
     mass `acceleration`, and the joints theirs. A uniform gravity g is an `acceleration` less g.
     """
-    placed = place(tree, q)
+    placed = placements(tree, q)
     moving = rates(placed, omega, speeds)
     alphas: list[Vec] = []
     origins: list[Vec] = []
@@ -119,7 +119,7 @@ def momentum(
 
     For a fixed base the angular momentum is about the ground's origin.
     """
-    placed = place(tree, q)
+    placed = placements(tree, q)
     moving = rates(placed, omega, speeds)
     velocities: list[Vec] = []
     carried: list[tuple[Vec, Vec]] = []  # angular about the link's origin, linear
@@ -158,5 +158,5 @@ def momentum(
                 linear = vadd(linear, f)
         return Momentum(angular, linear, energy)
     angular, linear = carried[0]
-    centre = composites(tree, placed)[0].centre
+    centre = composite_bodies(tree, placed)[0].centre
     return Momentum(vsub(angular, cross(centre, linear)), linear, energy)

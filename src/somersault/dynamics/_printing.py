@@ -14,10 +14,10 @@ import casadi as ca
 from somersault._core.errors import SomersaultError
 from somersault.dynamics._equations import Equations
 from somersault.dynamics._newton_euler import inverse_dynamics
-from somersault.dynamics._tree import Tree, parameter_names, parameter_value, tree
-from somersault.dynamics._vector import Vec, scale
-from somersault.model import Model
-from somersault.model._mirror import mirror_pairs
+from somersault.dynamics._parameters import body_numbers, body_parameter
+from somersault.dynamics._tree import Tree, link_tree
+from somersault.dynamics.vectors import Vec, scale
+from somersault.model import Model, common_name, mirror_pairs
 
 MOST_JOINTS = 3  # beyond this nobody reads a page of LaTeX
 
@@ -76,7 +76,7 @@ class _Page:
         self._values: dict[Any, float] = {}
         self._names: dict[str, Any] = {}
         symbols = self._open_numbers()
-        self._tree: Tree = tree(model, symbols)
+        self._tree: Tree = link_tree(model, symbols)
         count = len(model.speeds)
         self._q = ca.SX.sym("q", count)
         self._w = ca.SX.sym("w", 3)
@@ -143,22 +143,19 @@ class _Page:
         """A symbol for every number that is not zero; mirrored bodies share theirs."""
         shared = self._shared_names()
         symbols: dict[str, Any] = {}
-        for name in parameter_names(self._model):
-            value = parameter_value(self._model, name)
+        for body, kind, part, value in body_numbers(self._model):
             if value == 0.0:
                 continue
-            kind, _, rest = name.partition(".")
-            body, _, part = (rest, "", "") if kind == "mass" else rest.rpartition(".")
+            name = body_parameter(body.name, kind, part)
             letter = {"mass": "m", "com": "r", "inertia": "I", "position": "p"}[kind]
-            label = rf"\mathrm{{{_tex(shared.get(body, body))}}}" + (f",{part}" if part else "")
-            key = f"{letter}_{{{label}}}"
+            key = _symbol(letter, shared.get(body.name, body.name), part)
             known = self._names.get(key)
             if known is not None and abs(abs(self._values[known[1]]) - abs(value)) < 1e-12:
                 same = self._values[known[1]] * value > 0
                 symbols[name] = known[0] if same else -known[0]
                 continue
             if known is not None:
-                key = f"{letter}_{{\\mathrm{{{_tex(body)}}}" + (f",{part}" if part else "") + "}"
+                key = _symbol(letter, body.name, part)
             pair = (ca.SX.sym(key), self._sp.Symbol(key, real=True))
             self._names[key] = pair
             self._values[pair[1]] = value
@@ -167,8 +164,6 @@ class _Page:
 
     def _shared_names(self) -> dict[str, str]:
         """Body name to the name it shares with its mirror image."""
-        from somersault.model._mirror import common_name
-
         owners = [body.name for body in self._model.bodies for j in body.joints for _ in [j]]
         result: dict[str, str] = {}
         for pair in mirror_pairs(self._model):
@@ -277,6 +272,11 @@ class _Page:
             ),
             evaluate=False,
         )
+
+
+def _symbol(letter: str, body: str, part: str) -> str:
+    subscript = rf"\mathrm{{{_tex(body)}}}" + (f",{part}" if part else "")
+    return f"{letter}_{{{subscript}}}"
 
 
 def _tex(name: str) -> str:

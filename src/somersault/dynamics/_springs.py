@@ -11,26 +11,11 @@ from typing import Any
 
 import casadi as ca
 
-from somersault.dynamics._vector import Scalar, Vec, add, dot, is_zero, mul, scale, sub
-from somersault.model._types import Joint, Model
+from somersault.dynamics._parameters import joint_parameter
+from somersault.dynamics.vectors import Scalar, Vec, add, dot, is_zero, mul, scale, sub
+from somersault.model import Joint, Model
 
 _KINDS = ("stiffness", "rest", "damping")
-
-
-def parameter_names(model: Model) -> list[str]:
-    """Every spring and damper number that can be kept symbolic."""
-    return [
-        f"{kind}.{joint.name}"
-        for joint in model.joints
-        for kind in _KINDS
-        if kind != "rest" or joint.kind != "ball"
-    ]
-
-
-def parameter_value(model: Model, name: str) -> float:
-    """The number that a model has for one of `parameter_names`."""
-    kind, _, joint = name.partition(".")
-    return getattr(model.joint(joint), kind)
 
 
 def torques(
@@ -73,7 +58,7 @@ def energy(model: Model, q: Sequence[Scalar], symbols: Mapping[str, Any]) -> Sca
 
 
 def _number(joint: Joint, kind: str, symbols: Mapping[str, Any]) -> Scalar:
-    return symbols.get(f"{kind}.{joint.name}", float(getattr(joint, kind)))
+    return symbols.get(joint_parameter(joint.name, kind), float(getattr(joint, kind)))
 
 
 def _stretch(joint: Joint, q: Sequence[Scalar], stiffness: Scalar, rest: Scalar) -> Vec:

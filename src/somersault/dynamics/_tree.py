@@ -13,8 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from somersault.dynamics._vector import Mat, Scalar, Vec, mul, total
-from somersault.model._types import GROUND, Body, Joint, Model
+from somersault.dynamics._parameters import body_parameter
+from somersault.dynamics.vectors import Mat, Scalar, Vec, mul, total
+from somersault.model import GROUND, Body, Joint, Model
 
 _CLEAN = 1e-14  # entries below this fraction of the largest are rounding, and stand for zero
 
@@ -55,9 +56,9 @@ class Tree:
 Symbols = Mapping[str, Any]
 
 
-def tree(model: Model, symbols: Symbols | None = None) -> Tree:
-    """The links of a model; numbers named in `symbols` ("mass.BODY", "inertia.BODY.12",
-    "com.BODY.3", "position.BODY.2") are the symbols given."""
+def link_tree(model: Model, symbols: Symbols | None = None) -> Tree:
+    """The links of a model; numbers that `symbols` has, by the names of `parameter_values`, are
+    the symbols given."""
     symbols = symbols or {}
     links: list[Link] = []
     stands: list[_Stand] = []
@@ -136,30 +137,6 @@ def _jointed(
     return link, _Stand(len(links), axes, anchor)
 
 
-def parameter_names(model: Model) -> list[str]:
-    """Every number of a model's bodies that can be kept symbolic."""
-    names = []
-    for index, body in enumerate(model.bodies):
-        if index or not model.free:  # a free base is where it is
-            names += [f"position.{body.name}.{k}" for k in (1, 2, 3)]
-        names.append(f"mass.{body.name}")
-        names += [f"com.{body.name}.{k}" for k in (1, 2, 3)]
-        names += [f"inertia.{body.name}.{k}" for k in ("11", "12", "13", "22", "23", "33")]
-    return names
-
-
-def parameter_value(model: Model, name: str) -> float:
-    """The number that a model has for one of `parameter_names`."""
-    kind, _, rest = name.partition(".")
-    body_name, _, part = (rest, "", "") if kind == "mass" else rest.rpartition(".")
-    body = next(body for body in model.bodies if body.name == body_name)
-    if kind == "mass":
-        return body.mass
-    if kind in ("com", "position"):
-        return getattr(body, kind)[int(part) - 1]
-    return body.inertia[int(part[0]) - 1][int(part[1]) - 1]
-
-
 @dataclass(frozen=True)
 class _Properties:
     mass: Scalar
@@ -171,20 +148,24 @@ _NOTHING = _Properties(0.0, [0.0] * 3, [[0.0] * 3 for _ in range(3)])
 
 
 def _mass_properties(body: Body, symbols: Symbols) -> _Properties:
+    def given(kind: str, part: str, number: float) -> Scalar:
+        return symbols.get(body_parameter(body.name, kind, part), number)
+
     numbers = _clean(np.array(body.inertia))
     inertia = [
         [
-            symbols.get(f"inertia.{body.name}.{min(i, j) + 1}{max(i, j) + 1}", float(numbers[i, j]))
+            given("inertia", f"{min(i, j) + 1}{max(i, j) + 1}", float(numbers[i, j]))
             for j in range(3)
         ]
         for i in range(3)
     ]
-    com = [symbols.get(f"com.{body.name}.{k + 1}", body.com[k]) for k in range(3)]
-    return _Properties(symbols.get(f"mass.{body.name}", body.mass), com, inertia)
+    com = [given("com", str(k + 1), body.com[k]) for k in range(3)]
+    return _Properties(given("mass", "", body.mass), com, inertia)
 
 
 def _place_of(body: Body, symbols: Symbols) -> Vec:
-    return [symbols.get(f"position.{body.name}.{k + 1}", body.position[k]) for k in range(3)]
+    names = [body_parameter(body.name, "position", str(k + 1)) for k in range(3)]
+    return [symbols.get(name, body.position[k]) for k, name in enumerate(names)]
 
 
 def _aligned(joint: Joint) -> tuple[np.ndarray, int, float]:

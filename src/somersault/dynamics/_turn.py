@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from somersault.dynamics._vector import (
+from somersault.dynamics.vectors import (
     Mat,
     Scalar,
     Vec,

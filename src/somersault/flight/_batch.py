@@ -15,7 +15,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.dynamics._tree import parameter_value
+from somersault.dynamics import parameter_values
 from somersault.engine import MOST_STEPS, Solution
 from somersault.flight._course import Course
 from somersault.flight._plans import numbers, plans, sound
@@ -62,8 +62,9 @@ class Batch:
     def values(self) -> Mapping[Name, float | Array]:
         """The numbers of the takeoff, and of the bodies that may differ."""
         values = numbers(self.takeoff, self.joints)
+        of_model = parameter_values(self.model)
         for name in self.bodies:
-            values[(name,)] = parameter_value(self.model, name)
+            values[(name,)] = of_model[name]
         return values
 
     @cached_property

@@ -9,12 +9,16 @@ from typing import Any
 import casadi as ca
 
 from somersault.attitude import in_sequence
-from somersault.dynamics._articulated import forward_dynamics
-from somersault.dynamics._composite import composites, outboard_inertia
-from somersault.dynamics._motion import place
-from somersault.dynamics._newton_euler import inverse_dynamics, momentum
-from somersault.dynamics._tree import tree
-from somersault.dynamics._vector import Vec, matvec, solve_symmetric, vsub
+from somersault.dynamics import (
+    composite_bodies,
+    forward_dynamics,
+    inverse_dynamics,
+    link_tree,
+    momentum,
+    outboard_inertia,
+    placements,
+)
+from somersault.dynamics.vectors import Vec, matvec, solve_symmetric, vsub
 from somersault.flight._layout import ATTITUDE, RATE, Layout, Slot, layout
 from somersault.flight.behaviours import Coupled, Here, JointTakeoff, Known
 from somersault.model import Model
@@ -42,7 +46,9 @@ class Symbols:
     def tree(self) -> Any:
         """The links, with the bodies' numbers that are parameters."""
         places = self.layout.bodies
-        return tree(self.model, {n: self.p[k] for k, n in zip(places, self.bodies, strict=True)})
+        return link_tree(
+            self.model, {n: self.p[k] for k, n in zip(places, self.bodies, strict=True)}
+        )
 
     # ----------------------------------------------------------------------------- the joints
 
@@ -96,7 +102,7 @@ class Symbols:
             name = slot.joint.name
             where = self.known[name].q
             q += slot.kind.wanted(self.here[name]) if slot.paths else where
-        return outboard_inertia(self.tree, place(self.tree, q))
+        return outboard_inertia(self.tree, placements(self.tree, q))
 
     # ------------------------------------------------------------------------------- the body
 
@@ -112,7 +118,7 @@ class Symbols:
             return [self.y[ATTITUDE + k] for k in range(RATE)]
         still: Vec = [0.0, 0.0, 0.0]
         of_joints = momentum(self.tree, self.position, still, still, self.rate).angular
-        whole = composites(self.tree, place(self.tree, self.position))[0].about_centre
+        whole = composite_bodies(self.tree, placements(self.tree, self.position))[0].about_centre
         h = self._at(self.p, self.layout.momentum)
         left = vsub(_into_body(self.quaternion, h), of_joints)
         return solve_symmetric(whole, [left])[0]

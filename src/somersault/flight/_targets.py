@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from somersault._core.errors import SomersaultError
-from somersault.dynamics import parameter_names
+from somersault.dynamics import parameter_values
 from somersault.flight._batch import Batch
 from somersault.flight.behaviours import Coupled, declared
 from somersault.model import Model, sides
@@ -95,7 +95,7 @@ def _of_body(
     if body not in names:
         raise SomersaultError(f"there is no body {body!r}; there are {', '.join(names)}")
     if not mass:
-        if f"{what}.{body}.{k}" not in parameter_names(model):
+        if f"{what}.{body}.{k}" not in parameter_values(model):
             raise SomersaultError(f"{body} is the base, which has no position to vary")
         return (Target((f"{what}.{body}.{k}",), unit="m"),)
     own = model.bodies[names.index(body)]

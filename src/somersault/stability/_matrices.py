@@ -14,15 +14,11 @@ import casadi as ca
 from somersault.dynamics import (
     Equations,
     Expression,
-    Vec,
-    cross,
     inverse_dynamics,
     outboard_inertia,
-    place,
-    scale,
-    vadd,
-    vsub,
+    placements,
 )
+from somersault.dynamics.vectors import Vec, cross, scale, vadd, vsub
 from somersault.model import Model
 
 
@@ -41,7 +37,7 @@ def spin_matrices(equations: Equations) -> Expression:
     matrices = [ca.jacobian(loads, symbol) for symbol in (ddx, dx, x)]
     still = ca.vertcat(x, dx, ddx)
     at_rest = ca.substitute([*matrices, loads], [still], [ca.SX.zeros(still.numel())])
-    placed = place(equations.tree, [q[k] for k in range(q.numel())])
+    placed = placements(equations.tree, [q[k] for k in range(q.numel())])
     outboard = outboard_inertia(equations.tree, placed)
     value = ca.horzcat(*at_rest, ca.vertcat(0.0, 0.0, 0.0, *outboard))
     arguments = {"q": q, "axis": axis, "parameters": equations.open_parameters}
