@@ -1,4 +1,4 @@
-"""Errors of the thesis's text, each found by an independent calculation."""
+"""Errors of the thesis's text, each shown by an independent calculation."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ERRATA = (
         "eq. 2.3",
         "SΨ SΘ CΘ, CΨ SΘ CΘ, SΨ CΘ, CΨ CΘ in the first and third rows (as scanned)",
         "SΨ SΘ/CΘ, CΨ SΘ/CΘ, SΨ/CΘ, CΨ/CΘ",
-        "Fraction bars are lost: only so does it invert eq. 2.4.",
+        "The fraction bars are lost; only with them does it invert eq. 2.4.",
     ),
     Erratum(
         "§2.3.2",
@@ -35,7 +35,7 @@ ERRATA = (
         "The derivative of h/(I_o + 2 m_l r²). Newton's method converges with the printed form "
         "too, only more slowly.",
     ),
-    Erratum("ch. 3, text", "Fig. 4, Fig. 5", "figures 3-6 and 3-7", "The pictures meant."),
+    Erratum("ch. 3, text", "Fig. 4, Fig. 5", "figures 3-6 and 3-7", "The figures that are meant."),
     Erratum(
         "§4.3.1, Table 4.3",
         "k1 = 0.65, k3 = −0.87, tenfold growth in 3.1 rad at Γ = 1.3 rad",
@@ -47,7 +47,8 @@ ERRATA = (
         "A.3",
         "2 I l_l, 2 r l_l, 2 l_l; I_2; Π_3, Π_2 (as scanned)",
         "2 Il1; Il2; Il3, Il2",
-        "So read, all fourteen printed elements agree with an independent linearisation to 1e-9 at "
+        "Read this way, all fourteen printed elements agree with an independent linearisation to "
+        "1e-9 at "
         "Γ = 0.3, 1.3 and 2.1 rad. k33 and k55 have no rb2 term; k13 = k31 has one.",
     ),
     Erratum(

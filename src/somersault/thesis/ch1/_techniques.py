@@ -96,9 +96,11 @@ def fig_1_1() -> Result:
         "Three ways to influence a ballistic maneuver from within: change the inertia about an "
         "axis, and with it the rate; turn without any momentum by a sequence of limb movements; "
         "tilt the principal axes against the momentum, which starts or removes twist.",
-        "The thesis shows no numbers. Here the gymnast tucks in a somersault; turns over with no "
-        "momentum, by twisting his torso with legs apart and arms in, and back with arms out and "
-        "legs together; and leans his arms in a layout somersault, which starts a twist, and back "
+        "The thesis gives no numbers. Here the gymnast tucks during a somersault; turns over "
+        "without momentum by twisting his torso with legs apart and arms in, and back with arms "
+        "out and "
+        "legs together; and leans his arms to one side in a layout somersault, which starts a "
+        "twist, and back "
         "one twist later, which ends it.",
         (*_inertia_claims(), *_cat_claims(), *_tilt_claims()),
         _draw_1_1(),
@@ -111,8 +113,8 @@ def _inertia_claims() -> list[Claim]:
         ("somersault", 2, ("layout", "tuck"), "a somersault by tucking"),
         ("twist", 3, ("T", "layout"), "a skater's spin by lowering the arms"),
     ):
-        made = inertia_change(axis=axis, poses=poses)
-        flown = made.fly(accuracy=SHARP)
+        maneuver = inertia_change(axis=axis, poses=poses)
+        flown = maneuver.fly(accuracy=SHARP)
         rates = flown.angular_velocity[[0, -1], axis - 1]
         inertias = flown.system.equations.inertia(flown.dataset["joint_angle"].values[[0, -1]])
         before, after = inertias[:, axis - 1, axis - 1]
@@ -137,12 +139,12 @@ def _inertia_claims() -> list[Claim]:
 
 def _cat_claims() -> list[Claim]:
     full = [np.degrees(cat_turn(cycles=n).fly(accuracy=SHARP).landing.twist) for n in (1, 2, 3)]
-    made = cat_turn(torso=half_turn())
-    flown = made.fly(accuracy=SHARP)
+    turn = cat_turn(torso=half_turn())
+    flown = turn.fly(accuracy=SHARP)
     momentum = float(np.abs(flown.angular_momentum).max())
-    quicker = [apart(flown, made.scaled(k).fly(accuracy=SHARP)) for k in _QUICK]
+    quicker = [apart(flown, turn.scaled(k).fly(accuracy=SHARP)) for k in _QUICK]
     landed = Takeoff(quaternion=flown.landing.quaternion.tolist(), angular_momentum=(0, 0, 0))
-    back = made.reversed().from_takeoff(landed).fly(accuracy=SHARP)
+    back = turn.reversed().from_takeoff(landed).fly(accuracy=SHARP)
     home = 2 * float(np.linalg.norm(back.landing.quaternion[1:]))
     end = np.degrees([flown.landing.somersault, flown.landing.tilt, flown.landing.twist])
     joints = flown.dataset["joint_angle"].values
@@ -241,8 +243,8 @@ def _draw_1_1() -> Figure:
     from somersault.view import strip
     from somersault.view import style as look
 
-    made = look.figure(10.0, 6.2)
-    grid = made.subplots(3, 2, width_ratios=(2.7, 1))
+    picture = look.figure(10.0, 6.2)
+    grid = picture.subplots(3, 2, width_ratios=(2.7, 1))
     tuck = inertia_change(duration=0.65).fly()
     cat = cat_turn(torso=half_turn()).fly()
     arms = arm_tilt(duration=0.97).fly()
@@ -274,4 +276,4 @@ def _draw_1_1() -> Figure:
     other.plot(arms.times, np.degrees(arms.dataset["tilt"]), color=look.VERMILION)
     other.set(ylabel="tilt (°)", ylim=(-12, 0.45), yticks=(-10, -5, 0))
     other.yaxis.label.set_color(look.VERMILION)
-    return made
+    return picture

@@ -23,8 +23,8 @@ def fig_2_1() -> Result:
         "then tilt Θ = 25°\nabout the body's 1 axis",
         "then twist Ψ = 70°\nabout the body's 3 axis",
     )
-    made = look.figure(8.4, 3.2)
-    ax = made.add_subplot()
+    picture = look.figure(8.4, 3.2)
+    ax = picture.add_subplot()
     model = load("human_layout")
     seen = camera(38, 14)
     colors = (look.VERMILION, look.GREEN, look.BLUE)
@@ -62,14 +62,14 @@ def fig_2_1() -> Result:
         "The somersault, tilt and twist sequence that describes the body's attitude.",
         "The same on the rigid athlete human_layout, with body axes 1 (front), 2 (left), 3 (head).",
         (claim,),
-        made,
+        picture,
     )
 
 
 def _turn(axis: int, angle: float) -> Array:
     """The turn by an angle about axis 1, 2 or 3 (3, 3)."""
     i, j = (axis % 3, (axis + 1) % 3)
-    made = np.eye(3)
-    made[i, i] = made[j, j] = np.cos(angle)
-    made[j, i], made[i, j] = np.sin(angle), -np.sin(angle)
-    return made
+    matrix = np.eye(3)
+    matrix[i, i] = matrix[j, j] = np.cos(angle)
+    matrix[j, i], matrix[i, j] = np.sin(angle), -np.sin(angle)
+    return matrix

@@ -42,7 +42,7 @@ def fig_2_2() -> Result:
     """Which quadrant means what, with prisms."""
     bodies = random_bodies()
     one, two, three = bodies.T
-    found = rigid.quadrant(*rigid.inertia_ratios(one, two, three))
+    quadrants = rigid.quadrant(*rigid.inertia_ratios(one, two, three))
     wanted = {
         1: (two > one) & (two > three),
         2: (three > two) & (two > one),
@@ -56,8 +56,10 @@ def fig_2_2() -> Result:
             "Figure 2-2",
             f"quadrant {number} of the diagram is that of bodies with {words[number]}",
             words[number],
-            f"so for {int((found == number).sum())} random bodies in it, and no others",
-            bool(np.array_equal(found == number, wanted[number]) and (found == number).any()),
+            f"so for {int((quadrants == number).sum())} random bodies in it, and no others",
+            bool(
+                np.array_equal(quadrants == number, wanted[number]) and (quadrants == number).any()
+            ),
         )
         for number in (1, 2, 3, 4)
     )
@@ -75,8 +77,8 @@ def _draw_2_2() -> Figure:
     from somersault.view import charts
     from somersault.view import style as look
 
-    made = look.figure(6.4, 6.2)
-    ax = made.add_subplot()
+    picture = look.figure(6.4, 6.2)
+    ax = picture.add_subplot()
     charts.square(ax)
     ax.set(xlabel="$k_1 = (I_2 - I_3)/I_1$", ylabel="$k_3 = (I_2 - I_1)/I_3$")
     spots = [(a, b) for a in (-0.86, -0.43, 0.43, 0.86) for b in (-0.8, 0.8)]
@@ -91,7 +93,7 @@ def _draw_2_2() -> Figure:
         (0.5, -0.5, "4: $I_3 < I_2 < I_1$"),
     ):
         look.label(ax, x, y, text, look.BLUE, ha="center", fontsize=11)
-    return made
+    return picture
 
 
 def _prism(ax: Axes, k1: float, k3: float) -> None:
@@ -135,7 +137,7 @@ def fig_2_3() -> Result:
     )
     return Result(
         "The spin about axis 2 is stable where k1 and k3 have the same sign.",
-        f"So at all {stable.size} points of a grid, by the roots of equation 2.11.",
+        f"It is, at all {stable.size} points of a grid, by the roots of equation 2.11.",
         claims,
         _draw_2_3(ratios, stable),
     )
@@ -145,8 +147,8 @@ def _draw_2_3(ratios: Array, stable: Array) -> Figure:
     from somersault.view import charts
     from somersault.view import style as look
 
-    made = look.figure(4.8, 4.7)
-    ax = made.add_subplot()
+    picture = look.figure(4.8, 4.7)
+    ax = picture.add_subplot()
     charts.square(ax)
     charts.filled(ax, ratios, ratios, stable)
     ax.set(xlabel="$k_1$", ylabel="$k_3$")
@@ -157,7 +159,7 @@ def _draw_2_3(ratios: Array, stable: Array) -> Figure:
         (0.5, -0.5, "unstable:\nmiddle axis"),
     ):
         look.label(ax, x, y, text, ha="center", fontsize=11)
-    return made
+    return picture
 
 
 def fig_2_4() -> Result:
@@ -216,8 +218,8 @@ def _draw_2_4() -> Figure:
     from somersault.view import charts
     from somersault.view import style as look
 
-    made = look.figure(5.4, 5.2)
-    ax = made.add_subplot()
+    picture = look.figure(5.4, 5.2)
+    ax = picture.add_subplot()
     charts.square(ax)
     ax.set(xlabel="$k_1$", ylabel="$k_3$")
     angles = (2.5, 3.0, 3.5, 4.0, 5.0, 7.0, 10.0, 20.0)
@@ -236,4 +238,4 @@ def _draw_2_4() -> Figure:
     for x0, y0 in ((0.5, 0.5), (-0.5, -0.5)):
         look.label(ax, x0, y0, "stable:\nnothing grows", look.GREY, ha="center")
     ax.set_title("Somersault angle (rad) of a tenfold growth")
-    return made
+    return picture

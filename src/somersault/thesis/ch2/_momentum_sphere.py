@@ -36,9 +36,9 @@ def fig_2_7() -> Result:
         "A map of rigid body rotation for a human in the layout position: the angular momentum "
         "draws curves of constant energy on a sphere that turns with the body.",
         f"The same for human_layout. Energies over h² lie between {low:.4f} and {high:.4f} "
-        f"1/(kg m²), with the separatrix at {middle:.4f}; curves round the head-to-toe axis take "
-        f"{100 * minor_share(inertias):.0f} % of the sphere, those round the front-to-back axis "
-        f"the narrow lunes between. The black dot is the printed example, Θ = 3°, Ψ = 0.",
+        f"1/(kg m²), with the separatrix at {middle:.4f}; curves around the head-to-toe axis take "
+        f"{100 * minor_share(inertias):.0f} % of the sphere, and those around the front-to-back "
+        "axis the narrow lunes between them. The black dot is the printed example, Θ = 3°, Ψ = 0.",
         (*_bound_claims(inertias), *_kind_claims(inertias), *_curve_claims(inertias)),
         map_with_example(inertias, "human_layout held rigid"),
     )
@@ -48,12 +48,12 @@ def map_with_example(inertias: Array, title: str) -> Figure:
     from somersault.view import camera, sphere
     from somersault.view import style as look
 
-    made = sphere.sphere_map(inertias, sphere.energies(inertias, 6), title)
-    ball, chart = made.axes
+    picture = sphere.sphere_map(inertias, sphere.energies(inertias, 6), title)
+    ball, chart = picture.axes
     chart.plot(np.degrees(_EXAMPLE[1]), np.degrees(_EXAMPLE[0]), "o", color=look.BLACK, ms=5)
     spot = camera(*sphere.VIEW) @ rigid.momentum_direction(*_EXAMPLE)
     ball.plot(spot[0], spot[1], "o", color=look.BLACK, ms=5, zorder=9)
-    return made
+    return picture
 
 
 def _bound_claims(inertias: Array) -> list[Claim]:
@@ -187,8 +187,8 @@ def _draw_2_8() -> Figure:
     from somersault.view import camera
     from somersault.view import style as look
 
-    made = look.figure(5.0, 4.8)
-    ax = made.add_subplot()
+    picture = look.figure(5.0, 4.8)
+    ax = picture.add_subplot()
     seen = camera(25, 24)
     ax.add_patch(Circle((0, 0), 1, fc=look.PALE, ec=look.GREY, lw=0.8))
     turn = np.linspace(0, 2 * np.pi, 200)
@@ -222,4 +222,4 @@ def _draw_2_8() -> Figure:
     ax.set(xlim=(-1.5, 1.6), ylim=(-1.3, 1.5))
     ax.set_aspect("equal")
     ax.axis("off")
-    return made
+    return picture

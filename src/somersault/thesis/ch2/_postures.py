@@ -30,8 +30,8 @@ def fig_2_5() -> Result:
         rows.append((name, *(f"{x:.3f}" for x in inertias), f"{k1:.3f}", f"{k3:.3f}"))
     return Result(
         "A human in the tuck, pike and layout positions.",
-        "The three rigid athletes that ship: the mean man of de Leva (1996). The thesis does not "
-        "print the dimensions of its own.",
+        "The three rigid athletes that come with the package: the average man of de Leva (1996). "
+        "The thesis does not print the dimensions of its athlete.",
         (),
         _draw_2_5(),
         Table(("posture", "I1 kg m²", "I2 (somersault)", "I3", "k1", "k3"), tuple(rows)),
@@ -42,8 +42,8 @@ def _draw_2_5() -> Figure:
     from somersault.view import camera, draw_pose
     from somersault.view import style as look
 
-    made = look.figure(7.2, 3.6)
-    ax = made.add_subplot()
+    picture = look.figure(7.2, 3.6)
+    ax = picture.add_subplot()
     for place, name in enumerate(POSTURES):
         model = load(f"human_{name}")
         x = 1.35 * place
@@ -52,7 +52,7 @@ def _draw_2_5() -> Figure:
     ax.set(xlim=(-0.7, 3.5), ylim=(-1.35, 1.15))
     ax.set_aspect("equal")
     ax.axis("off")
-    return made
+    return picture
 
 
 @cache
@@ -101,7 +101,7 @@ def fig_2_6() -> Result:
     return Result(
         "Inertia ratios of a performer moving from tuck through pike to layout. Tuck and pike are "
         "stable as rigid bodies, layout is not.",
-        "So they are, for an athlete of the mean man's size (1.741 m, 73 kg; de Leva 1996), knees "
+        "They are, for an athlete of the average man's size (1.741 m, 73 kg; de Leva 1996), knees "
         "bent in the tuck. Between the postures the joint angles are interpolated (the thesis does "
         "not print its own sequence); on that path the body crosses "
         f"from stable to unstable {100 * (leaves - 1):.0f} % of the way from pike to layout, where "
@@ -140,8 +140,8 @@ def _draw_2_6(path: Array) -> Figure:
     from somersault.view import charts
     from somersault.view import style as look
 
-    made = look.figure(5.2, 5.0)
-    ax = made.add_subplot()
+    picture = look.figure(5.2, 5.0)
+    ax = picture.add_subplot()
     charts.square(ax)
     charts.filled(ax, [0, 1], [0, 1], np.ones((2, 2)), edge=None, alpha=0.35)
     charts.filled(ax, [-1, 0], [-1, 0], np.ones((2, 2)), edge=None, alpha=0.35)
@@ -155,4 +155,4 @@ def _draw_2_6(path: Array) -> Figure:
     look.label(ax, 0.04, 0.93, "stable", look.BLUE)
     look.label(ax, 0.04, -0.93, "unstable", look.GREY)
     look.label(ax, -0.96, -0.93, "stable", look.BLUE)
-    return made
+    return picture

@@ -19,8 +19,9 @@ def equations_2() -> Result:
     return Result(
         "Euler's equations, somersault, tilt and twist, their small deviations from a steady "
         "somersault, the inertia ratios and the roots of the characteristic equation.",
-        "All hold on random bodies and against flights of the shipped models, but one sign: the "
-        "pair that §2.3.2 prints as ±ν is ±jν (errata). Equation 2.3 has lost its fraction bars in "
+        "All hold on random bodies and against flights of the shipped models, except for one sign: "
+        "the pair that §2.3.2 prints as ±ν is ±jν (errata). Equation 2.3 has lost its fraction "
+        "bars in "
         "the scan: sin Θ cos Θ there is sin Θ/cos Θ, and the last row is divided by cos Θ.",
         claims,
     )
@@ -169,11 +170,11 @@ def _roots() -> list[Claim]:
     bodies = random_bodies()
     one, two, three = bodies.T
     k1, k3 = rigid.inertia_ratios(one, two, three)
-    found, closed = roots(bodies), rigid.gyric_roots(k1, k3)
-    apart = np.abs(found[:, :, None] - closed[:, None, :])
+    numeric, closed = roots(bodies), rigid.gyric_roots(k1, k3)
+    apart = np.abs(numeric[:, :, None] - closed[:, None, :])
     off = float(max(apart.min(1).max(), apart.min(2).max()))
-    mirrored = np.abs(found[:, :, None] + found[:, None, :]).min(2).max()
-    stable = found.real.max(-1) <= STABLE
+    mirrored = np.abs(numeric[:, :, None] + numeric[:, None, :]).min(2).max()
+    stable = numeric.real.max(-1) <= STABLE
     same = k1 * k3 > 0
     least = (two < one) & (two < three)
     b1, b2 = 1 + k1 * k3, k1 * k3
@@ -208,8 +209,8 @@ def _roots() -> list[Claim]:
         ),
         statement(
             "eq2.stroboscopic", "§2.3.2", "two roots lie at s = ±j Φ̇", "±j",
-            f"to {np.abs(found[:, :, None] - np.array([1j, -1j])).min(1).max():.0e}",
-            bool(np.abs(found[:, :, None] - np.array([1j, -1j])).min(1).max() < 1e-6),
+            f"to {np.abs(numeric[:, :, None] - np.array([1j, -1j])).min(1).max():.0e}",
+            bool(np.abs(numeric[:, :, None] - np.array([1j, -1j])).min(1).max() < 1e-6),
         ),
         statement(
             "eq2.nu", "§2.3.2", "the other two roots lie at s = ±ν, ν = √(k1 k3) Φ̇", "±ν",

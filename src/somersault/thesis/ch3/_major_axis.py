@@ -50,7 +50,7 @@ def fig_3_3() -> Result:
         "The 3D Biped's somersault axis is its major principal axis; the region of stable rotation "
         "about it is large.",
         f"Drawn for the tucked athlete, human_tuck: the robot's I1 and I3 are not in the thesis. "
-        f"Round its major axis lie {100 * share:.0f} % of the sphere (human_pike: "
+        f"Curves around its major axis take {100 * share:.0f} % of the sphere (human_pike: "
         f"{100 * pike:.0f} %), a narrow lune because I1 is nearly I2.",
         claims,
         sphere.sphere_map(inertias, sphere.energies(inertias, 6), "human_tuck held rigid"),

@@ -46,7 +46,11 @@ CHAPTER = Chapter(
         _entry(
             "fig4-11", "Figure 4-11: somersault and symmetric arms", "_stability_regions.fig_4_11"
         ),
-        _entry("sec4-3", "Section 4.3: edges at a dozen arm angles", "_stiffness_ranges.sec_4_3"),
+        _entry(
+            "sec4-3",
+            "Section 4.3: stabilising springs at a dozen arm angles",
+            "_stiffness_ranges.sec_4_3",
+        ),
         _entry("fig4-12", "Figure 4-12: somersaults until a quarter twist", "_lifetimes.fig_4_12"),
         _entry("sec4-3-3", "Section 4.3.3: two thousand seconds", "_long_flights.sec_4_3_3"),
         _entry(

@@ -50,9 +50,9 @@ def planar_tilt() -> float:
         c, s = np.cos(angle), np.sin(angle)
         swung = np.array([c * hang[0] - s * hang[1], s * hang[0] + c * hang[1]])
         away = pin + swung - centre
-        own = left.inertia[0][0]
-        return -(own + reduced * float(away @ swung)) / (
-            inertia + own + reduced * float(away @ away)
+        about_its_centre = left.inertia[0][0]
+        return -(about_its_centre + reduced * float(away @ swung)) / (
+            inertia + about_its_centre + reduced * float(away @ away)
         )
 
     return float(quad(rate, 0.0, _RAISED, epsabs=1e-13)[0])
@@ -100,8 +100,8 @@ def fig_4_13() -> Result:
         "asymmetry.",
         f"Furrer raises his left arm from the thigh to {_RAISED} rad (the thesis prints no angle), "
         f"without angular momentum: the body tilts by {np.degrees(body):.2f}° and the principal "
-        f"axes lean by another {np.degrees(incline):.2f}° in it. Drawn three times as large beside "
-        "it.",
+        f"axes lean by another {np.degrees(incline):.2f}° in it. The lines beside the picture show "
+        "these tilts three times as large.",
         claims,
         _draw_4_13(flown, body, incline),
     )
@@ -111,8 +111,8 @@ def _draw_4_13(flown: Flight, body: float, incline: float) -> Figure:
     from somersault.view import camera, draw_pose
     from somersault.view import style as look
 
-    made = look.figure(7.4, 4.2)
-    ax = made.add_subplot()
+    picture = look.figure(7.4, 4.2)
+    ax = picture.add_subplot()
     seen = camera(0, 0)
     model = flown.system.model
     joints = flown.dataset["joint_angle"].values
@@ -150,4 +150,4 @@ def _draw_4_13(flown: Flight, body: float, incline: float) -> Figure:
     ax.set(xlim=(-1.2, 5.2), ylim=(-1.4, 1.3))
     ax.set_aspect("equal")
     ax.axis("off")
-    return made
+    return picture

@@ -78,7 +78,7 @@ def fig_4_17() -> Result:
 def _draw_4_17() -> Figure:
     from somersault.view import style as look
 
-    made, ax = draw_part(THREE, "The rule: cancel the centrifugal term", (1.4, 0.83, "stable"))
+    picture, ax = draw_part(THREE, "The rule: cancel the centrifugal term", (1.4, 0.83, "stable"))
     edge = edges(FINE)
     ax.plot(FINE, edge.rule, color=look.VERMILION, lw=2)
     look.pointer(
@@ -90,4 +90,4 @@ def _draw_4_17() -> Figure:
     )
     ax.plot(np.pi / 2, 1.0, "o", color=look.BLACK, ms=5, zorder=6)
     look.pointer(ax, (np.pi / 2, 1.0), (1.75, 2.0), "thesis: ≈ 1.0 for\narms straight out")
-    return made
+    return picture

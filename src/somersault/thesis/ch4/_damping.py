@@ -54,8 +54,9 @@ def fig_4_7() -> Result:
     return Result(
         "The same locus with b_sh/Φ̇ = 0.1: the symmetry about the imaginary axis is lost, and no "
         "spring stabilises the system. Damping tends to destabilise gyrically stabilised systems.",
-        f"b_sh/Φ̇ has a unit: 0.1 kg m² is b/(Ω I_sh) = {damping:.2f}. Read so, and also with 0.1 "
-        f"taken as non-dimensional, no K_sh stabilises. The least growth rate is {moving[best]:.3f}"
+        f"b_sh/Φ̇ has a unit: 0.1 kg m² is b/(Ω I_sh) = {damping:.2f}. Read that way, and also "
+        "with 0.1 taken as non-dimensional, no K_sh stabilises the spin. The least growth rate is "
+        f"{moving[best]:.3f}"
         f" Ω, at K_sh = {SWEEP[best]:.2f}. ",
         tuple(_claims(roots, moving)),
         _draw_4_7(roots, moving, best),
@@ -140,12 +141,12 @@ def _draw_4_7(roots: Array, moving: Array, best: int) -> Figure:
     from somersault.view import charts
     from somersault.view import style as look
 
-    made = look.figure(9.2, 5.2)
-    ax, rate = made.subplots(1, 2, width_ratios=(1.1, 1))
+    picture = look.figure(9.2, 5.2)
+    ax, rate = picture.subplots(1, 2, width_ratios=(1.1, 1))
     ax.set_title("Roots at Γ = 1.3 rad, $b_{sh}$/Ω = 0.1 kg m²")
     dots = charts.locus(ax, SWEEP, roots, size=9, arrows=(-1.0, 0.3, 3.0))
     charts.stroboscopic(ax, text="stroboscopic")
-    made.colorbar(dots, ax=ax, label="$K_{sh}$", shrink=0.7)
+    picture.colorbar(dots, ax=ax, label="$K_{sh}$", shrink=0.7)
     undamped = roots_along(SWEEP, pose=NOMINAL).real.max(-1)
     rate.plot(SWEEP, undamped, color=look.BLUE)
     rate.plot(SWEEP, moving, color=look.VERMILION)
@@ -160,7 +161,7 @@ def _draw_4_7(roots: Array, moving: Array, best: int) -> Figure:
         f"damped: at least\n{moving[best]:.3f} Ω",
         look.VERMILION,
     )
-    return made
+    return picture
 
 
 # ------------------------------------------------------------------ beyond the thesis
@@ -181,14 +182,14 @@ def energy() -> Result:
         for name, chart in (("layout somersault, axis 2", layout), ("cartwheel, axis 1", wheel))
     ]
     return Result(
-        "Not in the thesis. Three kinds of spin: “definite”, the energy at the given angular "
-        "momentum is a minimum, so the motion stays near it and dampers only help; “gyroscopic”, "
-        "the energy is a saddle and Coriolis forces alone hold the motion there; “unstable”.",
+        "There are three kinds of spin. “Definite”: at the given angular momentum the energy is a "
+        "minimum, so the motion stays near it and dampers only help. “Gyroscopic”: the energy is a "
+        "saddle, and Coriolis forces alone hold the motion there. “Unstable”: nothing does.",
         "Every stable layout somersault is gyroscopic: twist has negative stiffness (k22 = I₂ − I₁ "
         "< 0) that no shoulder spring can lift. Of its two arm–body oscillations one has negative "
         f"energy, so a damper that takes energy away makes it larger. At Γ = 1.3, K_sh = 1: "
-        f"{_signs()}. That is why figure 4-7 has no stable spring. Where the two oscillations, of "
-        "opposite energy, meet lies the lower edge of figure 4-10. The same athlete turning "
+        f"{_signs()}. That is why figure 4-7 has no stable spring. The lower edge of figure "
+        "4-10 lies where the two oscillations, of opposite energy, meet. The same athlete turning "
         "cartwheels about "
         "the axis of greatest inertia is definite above a certain stiffness, and damping does no "
         "harm there.",
@@ -205,8 +206,8 @@ def _draw_energy(layout: xr.Dataset, wheel: xr.Dataset) -> Figure:
     from somersault.view import charts
     from somersault.view import style as look
 
-    made = look.figure(9.2, 7.4)
-    (left, right), (low_left, low_right) = made.subplots(2, 2, height_ratios=(1.4, 1))
+    picture = look.figure(9.2, 7.4)
+    (left, right), (low_left, low_right) = picture.subplots(2, 2, height_ratios=(1.4, 1))
     titles = "Layout somersault (axis 2)", "Cartwheel (axis 1)"
     damping = literal_damping()
     values = np.linspace(LOW, HIGH, 301)
@@ -243,7 +244,7 @@ def _draw_energy(layout: xr.Dataset, wheel: xr.Dataset) -> Figure:
         look.VERMILION,
     )
     look.label(low_right, 0.3, 0.18, "damped and undamped: no growth", look.BLACK)
-    return made
+    return picture
 
 
 def _signs() -> str:

@@ -142,12 +142,12 @@ def searched(subsystem: str, angles: Array, steps: int = 1200) -> list[list[tupl
         middle = (left + right) / 2
         same = _stable(subsystem, angles[row], middle) == starts
         left, right = np.where(same, middle, left), np.where(same, right, middle)
-    found = []
+    ranges = []
     for i in range(len(angles)):
         ends = [float(x) for x in ((left + right) / 2)[row == i]]
         ends = [*([LOW] if inside[i, 0] else []), *ends, *([HIGH] if inside[i, -1] else [])]
-        found.append(list(zip(ends[::2], ends[1::2], strict=True)))
-    return found
+        ranges.append(list(zip(ends[::2], ends[1::2], strict=True)))
+    return ranges
 
 
 def _stable(subsystem: str, angle: Array, stiffness: Array) -> Array:

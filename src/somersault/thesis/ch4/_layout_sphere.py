@@ -35,7 +35,7 @@ def fig_4_3() -> Result:
     return Result(
         "The map of figure 2-7 again: the rigid layout's instability is evident from trajectories "
         "that converge and diverge upon the somersault axis.",
-        f"Here for Furrer with his arms at Γ = 1.3 rad. The lunes round the front-to-back axis "
+        f"For Furrer with his arms at Γ = 1.3 rad. The lunes around the front-to-back axis "
         f"reach {widest:.1f}° of tilt.",
         claims,
         map_with_example(inertias, "Furrer held rigid, arms at 1.3 rad"),

@@ -87,9 +87,9 @@ def predicted() -> Array:
     return rates <= GROWS
 
 
-def ridge(found: Lifetimes) -> Array:
+def ridge(lives: Lifetimes) -> Array:
     """Points that reach the limit of eight."""
-    return found.somersaults >= MOST - 1e-9
+    return lives.somersaults >= MOST - 1e-9
 
 
 def widened(region: Array) -> Array:
@@ -107,16 +107,16 @@ def fig_4_12() -> Result:
     counts = []
     close = min(float(widened(region)[ridge(flights(*start))].mean()) for start in STARTS)
     for tilt, twist in STARTS:
-        found = flights(tilt, twist)
-        top = ridge(found)
+        lives = flights(tilt, twist)
+        top = ridge(lives)
         counts.append(int(top.sum()))
-        claims += _start_claims(tilt, twist, found, top, region)
+        claims += _start_claims(tilt, twist, lives, top, region)
         common = int((top & region).sum())
         rows.append((
             f"{tilt:g}", f"{twist:g}", str(counts[-1]), f"{100 * common / top.sum():.0f} %",
             f"{100 * (top & widened(region)).sum() / top.sum():.0f} %",
             f"{100 * common / region.sum():.0f} %",
-            f"{found.somersaults[region].mean():.1f}", f"{found.somersaults[~region].mean():.1f}",
+            f"{lives.somersaults[region].mean():.1f}", f"{lives.somersaults[~region].mean():.1f}",
         ))  # fmt: skip
     claims += _joint_claims(counts)
     return Result(
@@ -126,7 +126,7 @@ def fig_4_12() -> Result:
         "produces the most stable somersaults, and their number is sensitive to the initial tilt "
         "and twist.",
         "Starts (ours; the thesis's are not printed): tilt 0.01 rad; tilt 0.05 rad; twist 0.05 "
-        f"rad; of the angles' rates only the somersault's, {SPIN} rad/s; springs pretensioned; "
+        f"rad; only the somersault angle changes at first, at {SPIN} rad/s; springs pretensioned; "
         "K_sh = 0 is a constant torque. The quarter twist is an event of the integration: angular "
         "momentum along body axis 2 changes sign. Of the flights that reach eight at least "
         f"{100 * close:.0f} % lie on the linear region or next to it, from any of the starts; how "
@@ -141,15 +141,15 @@ def fig_4_12() -> Result:
 
 
 def _start_claims(
-    tilt: float, twist: float, found: Lifetimes, top: Array, region: Array
+    tilt: float, twist: float, lives: Lifetimes, top: Array, region: Array
 ) -> list[Claim]:
     name = f"fig4-12.tilt-{tilt:g}-twist-{twist:g}"
     start = f"from tilt {tilt:g}, twist {twist:g} rad"
     inside = float((top & region).sum() / top.sum())
     close = float((top & widened(region)).sum() / top.sum())
     cover = float((top & region).sum() / region.sum())
-    within, without = (float(found.somersaults[x].mean()) for x in (region, ~region))
-    survivors = found.furthest[top]
+    within, without = (float(lives.somersaults[x].mean()) for x in (region, ~region))
+    survivors = lives.furthest[top]
     clear = float((survivors < np.pi / 4).mean())
     return [
         statement(
@@ -194,13 +194,13 @@ def _joint_claims(counts: list[int]) -> list[Claim]:
 def _draw_4_12() -> Figure:
     from somersault.view import style as look
 
-    made = look.figure(9.6, 4.1)
-    grid = made.subplots(1, 3, sharey=True)
+    picture = look.figure(9.6, 4.1)
+    grid = picture.subplots(1, 3, sharey=True)
     region = both().transpose(STIFFNESS, ANGLE)
     for ax, (tilt, twist) in zip(grid, STARTS, strict=True):
-        found = flights(tilt, twist)
+        lives = flights(tilt, twist)
         shown = ax.pcolormesh(
-            ANGLES, STIFFNESSES, found.somersaults.T, cmap=look.darkening(), vmin=0, vmax=8,
+            ANGLES, STIFFNESSES, lives.somersaults.T, cmap=look.darkening(), vmin=0, vmax=8,
             edgecolors="white", linewidth=0.3,
         )  # fmt: skip
         ax.contour(
@@ -210,9 +210,9 @@ def _draw_4_12() -> Figure:
         ax.set(xlim=(0.35, 2.25), ylim=(-0.05, 1.85), xlabel="arm angle Γ (rad)")
         ax.set_title(f"tilt {tilt:g}, twist {twist:g} rad")
     grid[0].set_ylabel("shoulder stiffness $K_{sh}$")
-    bar = made.colorbar(shown, ax=grid, shrink=0.8)
+    bar = picture.colorbar(shown, ax=grid, shrink=0.8)
     bar.set_label("somersaults until a quarter twist (at most 8)")
     look.label(
         grid[0], 0.45, 0.12, "outlined: stable by the\nlinear analysis (fig. 4-9)", look.VERMILION
     )
-    return made
+    return picture

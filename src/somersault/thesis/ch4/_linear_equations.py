@@ -95,7 +95,7 @@ def _above(value: float) -> str:
 
 
 def _symmetry(systems: list[st.LinearSpin]) -> list[Claim]:
-    signs = {"M": (1, "M = Mᵀ"), "G": (-1, "G = −Gᵀ"), "K": (1, "K = Kᵀ, k13 = k31 among it")}
+    signs = {"M": (1, "M = Mᵀ"), "G": (-1, "G = −Gᵀ"), "K": (1, "K = Kᵀ, including k13 = k31")}
     claims = []
     for name, (sign, text) in signs.items():
         worst = max(
@@ -190,11 +190,11 @@ def _definite(systems: list[st.LinearSpin]) -> list[Claim]:
 
 def _rate() -> Claim:
     """One spring k_sh = K Φ̇² I_sh at two spin rates, entered in N m/rad."""
-    stiffness, found = 1.2, []
+    stiffness, roots = 1.2, []
     for rate in (2.0, 9.0):
         model = _sprung(stiffness * rate**2 * shoulder_inertia())
-        found.append(st.spin(model, 2, {"shoulder": NOMINAL}).linear(rate=rate).roots)
-    worst = max(float(np.abs(found[1] - root).min()) for root in found[0])
+        roots.append(st.spin(model, 2, {"shoulder": NOMINAL}).linear(rate=rate).roots)
+    worst = max(float(np.abs(roots[1] - root).min()) for root in roots[0])
     return statement(
         "eq4-1.rate",
         "eq. 4.9",
@@ -291,7 +291,7 @@ def _no_rb2() -> list[Claim]:
             statement(
                 f"appA-3.{name}-rb2",
                 "A.3",
-                f"the expression of {name} {'has' if has else 'has no'} rb2 term",
+                f"the expression of {name} {'has an' if has else 'has no'} rb2 term",
                 "depends on rb2" if has else "does not depend on rb2",
                 f"changes by {change[name]:.3f} kg m² when rb2 goes from 0.18 to 0.25 m",
                 (change[name] > 1e-9) == has,

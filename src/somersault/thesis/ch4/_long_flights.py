@@ -59,7 +59,7 @@ def sec_4_3_3() -> Result:
         "Two simulations from a tilt of 0.01 rad and no twist, {K_sh, Γ} = {1.2, 1.4} and "
         "{1.0, 1.6}, were stopped after 2000 simulated seconds and over 2750 stable somersaults; "
         "the maneuver may remain stable indefinitely as long as energy is conserved.",
-        f"So they are, from either reading of the start, at {SPIN} rad/s (the spin is not printed; "
+        f"Both last, with either reading of the start, at {SPIN} rad/s (the spin is not printed; "
         "2750 turns in 2000 s are 8.64 rad/s). The quarter twist is looked for at every step of "
         "the integration. Pictures: {1.2, 1.4} over the last two of its somersaults.",
         tuple(claims),

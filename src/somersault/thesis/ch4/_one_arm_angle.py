@@ -30,12 +30,12 @@ def _turned(angles: Array, total: bool) -> dict[str, Array]:
         2 * (long * cos2 + slender * sin2),
         2 * (long * sin2 + slender * cos2),
     )
-    body, own = load(SIMPLEST).bodies
-    found: dict[str, Array] = {}
+    body, arm_before = load(SIMPLEST).bodies
+    inertias: dict[str, Array] = {}
     for i, value in enumerate(arm):
-        rest = body.inertia[i][i] + (own.inertia[i][i] - value if total else 0 * value)
-        found |= {f"inertia.arm.{i + 1}{i + 1}": value, f"inertia.body.{i + 1}{i + 1}": rest}
-    return found
+        rest = body.inertia[i][i] + (arm_before.inertia[i][i] - value if total else 0 * value)
+        inertias |= {f"inertia.arm.{i + 1}{i + 1}": value, f"inertia.body.{i + 1}{i + 1}": rest}
+    return inertias
 
 
 def fig_4_20() -> Result:
@@ -129,12 +129,12 @@ def _draw_4_20(ours: Array) -> Figure:
     from somersault.view import charts
     from somersault.view import style as look
 
-    made = look.figure(7.0, 5.0)
-    ax = made.add_subplot()
+    picture = look.figure(7.0, 5.0)
+    ax = picture.add_subplot()
     human = region(THREE)
     charts.chart_axes(ax, "The simplest model with arms at Γ")
     charts.filled(ax, human[ANGLE], human[STIFFNESS], human.stable, look.PALE, look.GREY, alpha=1)
     charts.filled(ax, human[ANGLE], human[STIFFNESS], ours, look.ORANGE, look.VERMILION, alpha=0.8)
     look.pointer(ax, (1.57, 1.0), (1.9, 1.9), "simplest model", look.VERMILION)
     look.pointer(ax, (1.1, 0.8), (0.3, -0.6), "human model,\nfigure 4-10", look.GREY)
-    return made
+    return picture

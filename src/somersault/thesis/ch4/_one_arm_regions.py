@@ -133,9 +133,9 @@ def fig_4_19() -> Result:
         "Stable bodies in the k1–k3 square for nine sizes of arm, kl1 = −1, K_sh = 1.0: the larger "
         "I_rel, the easier it is to stabilise the bottom two quadrants.",
         f"The stable share of the bottom two quadrants grows from {100 * shares[0]:.0f} to "
-        f"{100 * shares[-1]:.0f} %, never falling. By itself the third quadrant (k1, k3 < 0), "
+        f"{100 * shares[-1]:.0f} %, never falling. On its own, the third quadrant (k1, k3 < 0), "
         f"where a "
-        f"rigid body needs no arm to be stable, first loses, from {100 * left[0]:.0f} to "
+        f"rigid body needs no arm to be stable, first loses ground, from {100 * left[0]:.0f} to "
         f"{100 * min(left):.0f} %: at K_sh = −kl1 nothing but the body's turning holds a "
         f"small arm. "
         "Hatching marks bodies that could not carry so large an arm.",
@@ -151,8 +151,8 @@ def _draw(
     from somersault.view import charts
     from somersault.view import style as look
 
-    made = look.figure(8.2, 8.8)
-    grid = made.subplots(3, 3, sharex=True, sharey=True)
+    picture = look.figure(8.2, 8.8)
+    grid = picture.subplots(3, 3, sharex=True, sharey=True)
     for i, (ax, panel, name, share) in enumerate(
         zip(grid.flat, panels, names, shares, strict=True)
     ):
@@ -175,8 +175,8 @@ def _draw(
         if i % 3 == 0:
             ax.set_ylabel("$k_3$")
     which = "quadrant 4 (lower right)" if relative is not None else "the lower half"
-    made.suptitle(
+    picture.suptitle(
         f"Blue: stable. Number: share of {which}. Hatched: no such body could carry the arm.",
         fontsize=10,
     )
-    return made
+    return picture

@@ -16,8 +16,8 @@ def one_arm_sketch() -> Figure:
     """A body and one arm that pivots about the centre of mass of both (figure 4-16)."""
     from matplotlib.patches import Ellipse, FancyArrowPatch, FancyBboxPatch
 
-    made = figure(6.4, 4.4)
-    ax = made.add_subplot()
+    drawing = figure(6.4, 4.4)
+    ax = drawing.add_subplot()
     ax.set_aspect("equal")
     ax.set(xlim=(-2.3, 2.7), ylim=(-1.75, 1.75))
     ax.axis("off")
@@ -46,4 +46,4 @@ def one_arm_sketch() -> Figure:
     pointer(ax, (-0.28, -0.2), (-2.25, -0.75), "spring $K_{sh}$ between\narm and body", VERMILION)
     label(ax, 0, -1.12, "body", BLACK, ha="center")
     label(ax, -1.75, 0.1, "one arm, held only\nby the spring", BLACK, va="bottom")
-    return made
+    return drawing

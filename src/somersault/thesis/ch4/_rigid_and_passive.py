@@ -53,9 +53,10 @@ def fig_4_2() -> Result:
         "about its middle principal axis.",
         f"Furrer at Γ = {NOMINAL} rad and {SPIN} rad/s from a tilt of 0.01 rad, momentum along the "
         f"inertial 2 axis; passive with K_sh = {STIFFNESS}: {turns:.2f} somersaults in "
-        f"{soft.landing.time:.2f} s. The thesis prints none of these numbers but Γ and the tilt, "
-        "and those for figure 4-15. Locked arms and arms on stiff, damped springs start alike and "
-        "part: damping takes the body over the separatrix, after which its twist only oscillates, "
+        f"{soft.landing.time:.2f} s. Of these numbers the thesis prints only Γ and the tilt, and "
+        "these only for figure 4-15. Locked arms and arms on stiff, damped springs start alike and "
+        "then part: damping takes the body over the separatrix, after which its twist only "
+        "oscillates, "
         "as the thesis describes; with locked arms it goes on. Strips: rigid above, passive below, "
         "every third of a somersault.",
         (*_passive_claims(soft), *_rigid_claims(), *_stiff_claims()),
@@ -96,10 +97,10 @@ def _rigid_claims() -> list[Claim]:
     claims = []
     for name, tilt, twist in (("tilt", 0.01, 0.0), ("twist", 0.0, 0.01)):
         flown = locked(tilt, twist)
-        found = np.stack([flown.dataset[x].values for x in ("somersault", "tilt", "twist")], -1)
+        angles = np.stack([flown.dataset[x].values for x in ("somersault", "tilt", "twist")], -1)
         h = float(np.linalg.norm(flown.start.momentum))
         motion = rigid.RigidMotion.from_momentum(inertias, h, flown.start.quaternion)
-        off = float(np.abs(found - motion.angles(flown.times)).max())
+        off = float(np.abs(angles - motion.angles(flown.times)).max())
         curve = rigid.energy_curve(inertias, motion.energy, 721, h)
         most = float(np.abs(rigid.tilt_and_twist(curve)[0]).max())
         edge = float(np.abs(rigid.tilt_and_twist(rigid.separatrix(inertias, 721))[0]).max())
@@ -119,9 +120,9 @@ def _rigid_claims() -> list[Claim]:
                 "largest tilt of the rigid "
                 f"layout from a {name} of 0.01 rad is that of its curve on the map",
                 "the flight follows its curve of constant energy",
-                f"{np.abs(found[:, 1]).max():.5f} rad flown, {most:.5f} rad on the curve",
-                abs(most - float(np.abs(found[:, 1]).max())) < 1e-4,
-                f"The bound of the energy's curve against the flight; of the separatrix it is "
+                f"{np.abs(angles[:, 1]).max():.5f} rad flown, {most:.5f} rad on the curve",
+                abs(most - float(np.abs(angles[:, 1]).max())) < 1e-4,
+                f"The bound of the energy's curve against the flight; that of the separatrix is "
                 f"{edge:.5f} rad.",
             ),
         ]
@@ -163,8 +164,8 @@ def _draw_4_2(soft: Flight) -> Figure:
     from somersault.view import strip
     from somersault.view import style as look
 
-    made = look.figure(8.2, 9.2)
-    grid = made.subplots(5, 1, height_ratios=(1, 1, 1, 0.75, 0.75))
+    picture = look.figure(8.2, 9.2)
+    grid = picture.subplots(5, 1, height_ratios=(1, 1, 1, 0.75, 0.75))
     shown = (
         (soft, look.BLUE, "-", "passive"),
         (stiff(), look.VERMILION, "--", "rigid: stiff and damped"),
@@ -195,4 +196,4 @@ def _draw_4_2(soft: Flight) -> Figure:
     times = np.arange(0, 13) * TURN / 3
     for ax, flown in zip(grid[3:], (stiff(), soft), strict=True):
         strip(ax, flown, times, words=False)
-    return made
+    return picture

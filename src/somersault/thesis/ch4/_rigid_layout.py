@@ -189,8 +189,8 @@ def _draw_4_5(angles: Array, k1: Array, k3: Array) -> Figure:
     from somersault.view import charts
     from somersault.view import style as look
 
-    made = look.figure(8.6, 4.4)
-    whole, near = made.subplots(1, 2, width_ratios=(1, 1.1))
+    picture = look.figure(8.6, 4.4)
+    whole, near = picture.subplots(1, 2, width_ratios=(1, 1.1))
     charts.growth_curves(whole, (2.5, 3, 4, 6, 10), (0.95, 0.85, 0.7, 0.5, 0.3))
     whole.set(xlim=(0, 1), ylim=(-1, 0), title="Tenfold growth in Φ rad")
     whole.set(xlabel="$k_1$", ylabel="$k_3$")
@@ -209,4 +209,4 @@ def _draw_4_5(angles: Array, k1: Array, k3: Array) -> Figure:
         look.label(near, x, y, words, look.VERMILION, ha="right" if rising else "left")
     near.plot(0.65, -0.87, "x", color=look.BLUE, ms=8, mew=2)
     look.label(near, 0.645, -0.898, "printed for 1.3", look.BLUE)
-    return made
+    return picture

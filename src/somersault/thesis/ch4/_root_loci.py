@@ -32,13 +32,13 @@ PANELS = np.round(np.arange(0, 2.9, 0.4), 1)  # figure 4-8: 0.0 top left to 2.8 
 
 def roots_along(values: Array, **fixed: float) -> Array:
     """Roots (K_sh, 6) of tilt, twist and asymmetric arms; `fixed` by kind (pose, damping)."""
-    found = st.root_locus(
+    locus = st.root_locus(
         MODEL,
         (STIFFNESS, values),
         fixed={f"{kind}.shoulder": value for kind, value in fixed.items()},
         subsystem=THREE,
     )
-    return np.asarray(found.growth.values + 1j * found.frequency.values)
+    return np.asarray(locus.growth.values + 1j * locus.frequency.values)
 
 
 def asymmetry(roots: Array) -> float:
@@ -191,8 +191,8 @@ def _stroboscopic() -> list[Claim]:
     worst, arms, parallel = 0.0, 0.0, 0.0
     for angle in np.linspace(0, 3, 16):
         for damping in (0.0, 0.26):
-            found = undivided_roots(at(float(angle)), SWEEP[::6], damping)
-            worst = max(worst, float(np.abs(found - 1j).min(-1).max()))
+            roots = undivided_roots(at(float(angle)), SWEEP[::6], damping)
+            worst = max(worst, float(np.abs(roots - 1j).min(-1).max()))
     for k in (-2.0, 0.0, 1.0, 1.3, 4.0):
         part = at(NOMINAL).spin.linear({"shoulder": k}).subsystem(THREE)
         mode = min(part.modes, key=lambda mode: abs(mode.root - 1j))
@@ -219,7 +219,7 @@ def _stroboscopic() -> list[Claim]:
             "a rigid-body mode",
             "no arm in the eigenvector" if arms < 1e-6 else f"arms by up to {arms:.1e}",
             arms < 1e-6,
-            "Beside a tilt and twist of 1, at K_sh = −2, 0, 1, 1.3 and 4.",
+            "For a tilt and twist of 1, at K_sh = −2, 0, 1, 1.3 and 4.",
         ),
         statement(
             "fig4-6.pure-spin",
@@ -238,8 +238,8 @@ def _draw_4_6(roots: Array, low: float, high: float) -> Figure:
     from somersault.view import charts
     from somersault.view import style as look
 
-    made = look.figure(7.0, 5.6)
-    ax = made.add_subplot(title="Roots at Γ = 1.3 rad, undamped")
+    picture = look.figure(7.0, 5.6)
+    ax = picture.add_subplot(title="Roots at Γ = 1.3 rad, undamped")
     dots = charts.locus(ax, SWEEP, roots, size=9, arrows=(-1.0, 0.45, 2.5))
     charts.stroboscopic(ax)
     corner = roots[0][np.argmax(roots[0].real + roots[0].imag)]
@@ -251,8 +251,8 @@ def _draw_4_6(roots: Array, low: float, high: float) -> Figure:
     y = float(np.median(meeting.imag[meeting.imag > 0]))
     look.pointer(ax, (0, y), (-1.9, y + 0.1), f"meet at {low:.2f}", look.VERMILION)
     look.pointer(ax, (0, 0), (-1.9, 0.22), f"origin at {high:.2f}", look.VERMILION)
-    made.colorbar(dots, ax=ax, label="$K_{sh}$", shrink=0.7)
-    return made
+    picture.colorbar(dots, ax=ax, label="$K_{sh}$", shrink=0.7)
+    return picture
 
 
 def fig_4_8() -> Result:
@@ -307,8 +307,8 @@ def _draw_4_8(loci: list[Array], rows: list[tuple[str, str]]) -> Figure:
     from somersault.view import charts
     from somersault.view import style as look
 
-    made = look.figure(8.6, 9.0)
-    grid = made.subplots(3, 3, sharex=True, sharey=True)
+    picture = look.figure(8.6, 9.0)
+    grid = picture.subplots(3, 3, sharex=True, sharey=True)
     for ax, roots, (angle, text) in zip(grid.flat, loci, rows, strict=False):
         dots = charts.locus(ax, SWEEP[::3], roots, size=5)
         ax.set(xlabel="", ylabel="", xlim=(-2, 2), ylim=(-2.6, 2.6))
@@ -327,7 +327,7 @@ def _draw_4_8(loci: list[Array], rows: list[tuple[str, str]]) -> Figure:
     last = grid.flat[-1]
     last.axis("off")
     look.label(last, 0.02, 0.75, "rings: stroboscopic\nroots at ±i", transform=last.transAxes)
-    made.colorbar(dots, ax=last, label="$K_{sh}$", orientation="horizontal", fraction=0.2)
-    made.supxlabel("real part (growth), units of Ω", fontsize=10)
-    made.supylabel("imaginary part, units of Ω", fontsize=10)
-    return made
+    picture.colorbar(dots, ax=last, label="$K_{sh}$", orientation="horizontal", fraction=0.2)
+    picture.supxlabel("real part (growth), units of Ω", fontsize=10)
+    picture.supylabel("imaginary part, units of Ω", fontsize=10)
+    return picture

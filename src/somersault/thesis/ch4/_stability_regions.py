@@ -93,14 +93,14 @@ def _width(angle: float) -> float:
 
 def _range_claims(low: float, high: float) -> list[Claim]:
     where = "§4.3.3, Figure 4-9"
-    found = {}
+    ends = {}
     for step in (0.1, 0.05, 0.02):
         angles = np.arange(0, 3 + step / 2, step)
         stiffness = np.arange(step, HIGH + step / 2, step)
         rates = st.growth_rates(MODEL, {ANGLE: angles[:, None], STIFFNESS: stiffness[None, :]})
         some = angles[(rates <= GROWS).any(1)]
-        found[step] = (round(float(some.min()), 2), round(float(some.max()), 2))
-    finer = ", ".join(f"{a:g} to {b:g} with {step:g}" for step, (a, b) in found.items())
+        ends[step] = (round(float(some.min()), 2), round(float(some.max()), 2))
+    finer = ", ".join(f"{a:g} to {b:g} with {step:g}" for step, (a, b) in ends.items())
     blade = (
         f"A blade: stable K_sh are {_width(0.6):.4f} apart at 0.6 rad, {_width(0.7):.3f} at "
         f"0.7 and "
@@ -112,8 +112,8 @@ def _range_claims(low: float, high: float) -> list[Claim]:
             where,
             "positive springs stabilise arm angles between 0.8 and 2.0 rad (points 0.1 apart)",
             "0.8 to 2.0 rad",
-            f"{found[0.1][0]:g} to {found[0.1][1]:g} rad",
-            found[0.1] == (0.8, 2.0),
+            f"{ends[0.1][0]:g} to {ends[0.1][1]:g} rad",
+            ends[0.1] == (0.8, 2.0),
             f"Depends on how finely one searches: {finer}. The thesis does not give its spacing.",
         ),
         number(
@@ -212,8 +212,8 @@ def _draw_4_9() -> Figure:
     from somersault.view import charts
     from somersault.view import style as look
 
-    made = look.figure(7.4, 5.4)
-    ax = made.add_subplot()
+    picture = look.figure(7.4, 5.4)
+    ax = picture.add_subplot()
     charts.chart_axes(ax, "Stable somersaults, five degrees of freedom")
     edge = edges(FINE)
     charts.band(ax, FINE, edge.lower3, edge.upper3, look.PALE, None, alpha=1)
@@ -230,15 +230,15 @@ def _draw_4_9() -> Figure:
     look.pointer(ax, (0.6, 0.64), (0.12, 1.5), "a blade 0.01 wide\nat 0.6 rad", look.BLUE)
     ax.annotate("", (2.0, 2.4), (0.8, 2.4), arrowprops={"arrowstyle": "<->", "lw": 1})
     look.label(ax, 1.4, 2.65, "thesis: 0.8 to 2.0 rad with positive springs", ha="center")
-    return made
+    return picture
 
 
 def draw_part(subsystem: str, title: str, words: tuple[float, float, str]) -> tuple[Figure, Axes]:
     from somersault.view import charts
     from somersault.view import style as look
 
-    made = look.figure(7.0, 5.0)
-    ax = made.add_subplot()
+    picture = look.figure(7.0, 5.0)
+    ax = picture.add_subplot()
     charts.chart_axes(ax, title)
     edge = edges(FINE)  # the same as the search finds, as claims of 4-10 and 4-11 check
     if subsystem == THREE:
@@ -246,7 +246,7 @@ def draw_part(subsystem: str, title: str, words: tuple[float, float, str]) -> tu
     else:
         charts.band(ax, FINE, edge.lower2, np.full_like(FINE, HIGH))
     look.label(ax, *words, look.BLUE, ha="center", fontsize=10)
-    return made, ax
+    return picture, ax
 
 
 def fig_4_10() -> Result:
@@ -297,10 +297,10 @@ def _one_peak(widths: Array) -> bool:
 def _draw_4_10() -> Figure:
     from somersault.view import style as look
 
-    made, ax = draw_part(THREE, "Tilt, twist and asymmetric arms", (1.42, 0.95, "stable"))
+    picture, ax = draw_part(THREE, "Tilt, twist and asymmetric arms", (1.42, 0.95, "stable"))
     look.pointer(ax, (1.55, 1.18), (1.9, 1.9), "above: a root leaves zero,\ntilt and twist diverge")
     look.pointer(ax, (1.1, 0.78), (0.3, -0.8), "below: two oscillations\nmeet and one grows")
-    return made
+    return picture
 
 
 def fig_4_11() -> Result:

@@ -43,9 +43,9 @@ def sec_4_3() -> Result:
     return Result(
         "Which shoulder springs make the layout somersault stable at each arm angle (figures 4-9, "
         "4-10 and 4-11 hold these numbers as pictures).",
-        "Each edge is found by searching and halving, and again without a search: of the 3-d.o.f. "
-        "system from its characteristic polynomial, of the 2-d.o.f. system in closed form, and of "
-        "the 5-d.o.f. system from all ten roots of the undivided equations.",
+        "Each edge is located by bisection, and again without a search: for the 3-d.o.f. system "
+        "from its characteristic polynomial, for the 2-d.o.f. system in closed form, and for the "
+        "5-d.o.f. system from all ten roots of the undivided equations.",
         tuple(claims),
         table=Table(("Γ (rad)", "5 d.o.f.", "3 d.o.f.", "2 d.o.f. (up to 4)"), rows),
     )
@@ -118,9 +118,9 @@ def _five(angle: float, ranges: list[tuple[float, float]]) -> Claim:
 
 def _positive(angle: float, ranges: list[tuple[float, float]]) -> Claim:
     expected = 0.8 - 1e-9 <= angle <= 2.0 + 1e-9
-    found = any(high > 0 for _, high in ranges)
+    stable = any(high > 0 for _, high in ranges)
     note = ""
-    if found and not expected:
+    if stable and not expected:
         note = (
             f"The range is {ranges[0][1] - ranges[0][0]:.4f} wide, the thin end of the region: a "
             "search on separate points misses it (see figure 4-9)."
@@ -133,12 +133,12 @@ def _positive(angle: float, ranges: list[tuple[float, float]]) -> Claim:
         else f"no positive K_sh stabilises Γ = {angle:.1f} rad",
         "stable between 0.8 and 2.0 rad" if expected else "outside 0.8 to 2.0 rad",
         shown(ranges),
-        found == expected,
+        stable == expected,
         note,
     )
 
 
-def _three(found: Ranges, edge: Edges) -> list[Claim]:
+def _three(searched: Ranges, edge: Edges) -> list[Claim]:
     claims = []
     for i, angle in enumerate(ANGLES):
         exists = not np.isnan(edge.lower3[i])
@@ -149,8 +149,8 @@ def _three(found: Ranges, edge: Edges) -> list[Claim]:
                 "Figure 4-10",
                 f"edges of the 3-d.o.f. region at Γ = {angle:.1f} rad",
                 "in figure 4-10, without numbers",
-                shown(found[i]),
-                _equal(found[i], exact),
+                shown(searched[i]),
+                _equal(searched[i], exact),
                 f"Holds if the search agrees to 1e-6 with the characteristic polynomial: "
                 f"{shown(exact)}.",
             )
@@ -158,7 +158,7 @@ def _three(found: Ranges, edge: Edges) -> list[Claim]:
     return claims
 
 
-def _two(found: Ranges, edge: Edges) -> list[Claim]:
+def _two(searched: Ranges, edge: Edges) -> list[Claim]:
     return [
         statement(
             f"sec4-3.two-{angle:.1f}",
@@ -166,7 +166,7 @@ def _two(found: Ranges, edge: Edges) -> list[Claim]:
             f"the 2-d.o.f. system at Γ = {angle:.1f} rad is stable above one edge",
             "in figure 4-11, without numbers",
             f"K_sh > {edge.lower2[i]:.3f}",
-            _equal(found[i], [(float(edge.lower2[i]), HIGH)]),
+            _equal(searched[i], [(float(edge.lower2[i]), HIGH)]),
             "Holds if the search agrees to 1e-6 with −(k55 + g45²/m44)/(2 I_sh).",
         )
         for i, angle in enumerate(ANGLES)

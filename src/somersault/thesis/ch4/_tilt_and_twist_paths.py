@@ -66,12 +66,12 @@ def _both_ways(starts: tuple[tuple[float, float], ...]) -> list[Array]:
     """Paths through the starts, backwards in time and forwards, in degrees, in order of time."""
     inertias = st.principal_inertias(MODEL, {"shoulder": NOMINAL})
     times = np.arange(-40, 41) * _DOT
-    found = []
+    paths = []
     for tilt, twist in starts:
         c = rigid.momentum_direction(*np.radians([tilt, twist]))
         motion = rigid.RigidMotion(inertias, SPIN * inertias[1] * c / inertias)
-        found.append(np.degrees(rigid.tilt_and_twist(motion.omega(times) * inertias)))
-    return found
+        paths.append(np.degrees(rigid.tilt_and_twist(motion.omega(times) * inertias)))
+    return paths
 
 
 def fig_4_14() -> Result:
@@ -117,8 +117,8 @@ def fig_4_14() -> Result:
 def _draw_4_14() -> Figure:
     from somersault.view import style as look
 
-    made = look.figure(7.2, 5.0)
-    ax = made.add_subplot()
+    picture = look.figure(7.2, 5.0)
+    ax = picture.add_subplot()
     _near_the_origin(ax)
     circles = rigid.separatrix(st.principal_inertias(MODEL, {"shoulder": NOMINAL}), 1441)
     for circle in circles:
@@ -126,7 +126,7 @@ def _draw_4_14() -> Figure:
         near = np.abs(twist) < 13
         ax.plot(np.where(near, twist, np.nan), tilt, color=look.BLACK, lw=1.8, zorder=1)
     look.label(ax, 7.2, 1.15, "separatrix")
-    return made
+    return picture
 
 
 def circling(tilt: Array, twist: Array) -> tuple[float, float]:
@@ -141,39 +141,39 @@ def fig_4_15() -> Result:
     flown = passive(NOMINAL, STIFFNESS)
     history = flown.dataset
     tilt, twist = history["tilt"].values, history["twist"].values
-    mine = principal_attitude(flown)
+    principal = principal_attitude(flown)
     return Result(
         "A passively stable simulation from a tilt of 0.01 rad over the rigid trajectories: it "
         "circles the origin counter-clockwise, twisting with the flow and tilting upstream. The "
         "arms move asymmetrically (left up, right down) in answer to a negative twist rate, which "
         "reduces the tilt of the principal axes.",
         f"Γ = {NOMINAL} rad, K_sh = {STIFFNESS} (not printed), {SPIN} rad/s, momentum along the "
-        "inertial 2 axis. What circles, all the time and the way the thesis says, are the "
-        "principal axes; the body's own tilt and twist carry the arms' quick rocking on top, and "
-        "whether they circle depends on the spring.",
-        tuple(_claims_4_15(flown, tilt, twist, mine)),
-        _draw_4_15(tilt, twist, mine),
+        "inertial 2 axis. It is the principal axes that circle, all the time and in the direction "
+        "that the thesis says; the body's own tilt and twist also carry the quick rocking of the "
+        "arms, and whether they circle depends on the spring.",
+        tuple(_claims_4_15(flown, tilt, twist, principal)),
+        _draw_4_15(tilt, twist, principal),
     )
 
 
 def _claims_4_15(
-    flown: Flight, tilt: Array, twist: Array, mine: tuple[Array, Array]
+    flown: Flight, tilt: Array, twist: Array, principal: tuple[Array, Array]
 ) -> list[Claim]:
     where = "§4.4.1, Figure 4-15"
-    turns, share = circling(*mine)
-    own = circling(tilt, twist)
+    turns, share = circling(*principal)
+    of_body = circling(tilt, twist)
     others = []
     for stiffness in (0.95, 1.2, 1.3):
         other = passive(NOMINAL, stiffness)
-        found = circling(*principal_attitude(other))
+        axes = circling(*principal_attitude(other))
         body = circling(other.dataset["tilt"].values, other.dataset["twist"].values)
-        others.append((stiffness, found, body[0]))
+        others.append((stiffness, axes, body[0]))
     joints = flown.dataset["joint_angle"]
     left = joints.sel(joint="left_shoulder").values - NOMINAL
     right = -joints.sel(joint="right_shoulder").values - NOMINAL  # up is positive
     rate = np.gradient(twist, flown.times)
     begin = flown.times < 0.05
-    falling = np.gradient(mine[0], flown.times)[begin]
+    falling = np.gradient(principal[0], flown.times)[begin]
     locked = _rigid_paths(((np.degrees(0.01), 0.0),), 0.06)[0][0]
     lean = (left - right) / 2
     first = slice(1, int(np.argmax(rate > 0)))  # until the first negative twist is over
@@ -191,8 +191,8 @@ def _claims_4_15(
         statement(
             "fig4-15.body", where, "the passively stable trajectory circles the origin "
             "counter-clockwise (the body's own tilt and twist)", "counter-clockwise",
-            f"{own[0]:+.1f} times, {100 * own[1]:.0f} % of the time that way",
-            own[0] > 1 and own[1] > 0.6,
+            f"{of_body[0]:+.1f} times, {100 * of_body[1]:.0f} % of the time that way",
+            of_body[0] > 1 and of_body[1] > 0.6,
             "The body's own tilt rocks with the arms; turns with other springs: "
             + ", ".join(f"{b:+.1f} at K_sh = {k:g}" for k, _, b in others)
             + ". The thesis does not print its spring, nor which axes it plots.",
@@ -206,8 +206,8 @@ def _claims_4_15(
         statement(
             "fig4-15.upstream", where, "from there the tilt of the principal axes decreases "
             "despite the rigid body's tendency to increase it", "decreases",
-            f"falls by {np.degrees(mine[0][0] - mine[0][begin][-1]):.4f}° in 0.05 s; rigid it "
-            f"rises by {np.degrees(locked[-1] - locked[0]):.4f}°",
+            f"falls by {np.degrees(principal[0][0] - principal[0][begin][-1]):.4f}° in 0.05 s; "
+            f"rigid it rises by {np.degrees(locked[-1] - locked[0]):.4f}°",
             bool(np.all(falling[1:] < 0) and locked[-1] > locked[0]),
         ),
         statement(
@@ -230,13 +230,13 @@ def _claims_4_15(
     ]  # fmt: skip
 
 
-def _draw_4_15(tilt: Array, twist: Array, mine: tuple[Array, Array]) -> Figure:
+def _draw_4_15(tilt: Array, twist: Array, principal: tuple[Array, Array]) -> Figure:
     from somersault.view import style as look
 
-    made = look.figure(9.4, 4.4)
-    grid = made.subplots(1, 2, sharex=True, sharey=True)
+    picture = look.figure(9.4, 4.4)
+    grid = picture.subplots(1, 2, sharex=True, sharey=True)
     for ax, (up, right), name in zip(
-        grid, (mine, (tilt, twist)), ("principal axes", "body"), strict=True
+        grid, (principal, (tilt, twist)), ("principal axes", "body"), strict=True
     ):
         _near_the_origin(ax, dots=False)
         ax.plot(np.degrees(right), np.degrees(up), color=look.VERMILION, lw=1.0, zorder=5)
@@ -249,4 +249,4 @@ def _draw_4_15(tilt: Array, twist: Array, mine: tuple[Array, Array]) -> Figure:
             },
         )  # fmt: skip
         ax.set(xlim=(-7, 7), ylim=(-1.5, 1.5), title=f"tilt and twist of the {name}")
-    return made
+    return picture

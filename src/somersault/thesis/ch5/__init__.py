@@ -21,7 +21,7 @@ CHAPTER = Chapter(
         ),
         _entry(
             "fig5-7",
-            "Figure 5-7: somersaults of twenty launches a spring",
+            "Figure 5-7: somersaults of twenty launches with each spring",
             "_launch_results.fig_5_7",
         ),
         _entry("fig5-8", "Figure 5-8: completely stable launches", "_launch_results.fig_5_8"),
@@ -30,7 +30,7 @@ CHAPTER = Chapter(
         ),
         _entry(
             "ch5-springs",
-            "Which five springs there were",
+            "Which five springs the doll had",
             "_five_springs.springs_tried",
             beyond=True,
         ),

@@ -53,12 +53,12 @@ def parameters(model: str | Model) -> dict[str, float]:
     """Table 5.1's parameters as a model has them, of its left arm."""
     body, arm, _ = load(model).bodies
     pin = np.array(arm.joints[0].anchor)
-    found = {"mb": body.mass, "ml": arm.mass}
-    found |= {f"Ib{i + 1}": body.inertia[i][i] for i in range(3)}
-    found |= {f"Il{i + 1}": arm.inertia[i][i] for i in range(3)}
-    found |= {f"rb{i + 1}": float(arm.position[i] + pin[i] - body.com[i]) for i in range(3)}
-    found |= {f"rl{i + 1}": float(pin[i] - arm.com[i]) for i in range(3)}
-    return found
+    values = {"mb": body.mass, "ml": arm.mass}
+    values |= {f"Ib{i + 1}": body.inertia[i][i] for i in range(3)}
+    values |= {f"Il{i + 1}": arm.inertia[i][i] for i in range(3)}
+    values |= {f"rb{i + 1}": float(arm.position[i] + pin[i] - body.com[i]) for i in range(3)}
+    values |= {f"rl{i + 1}": float(pin[i] - arm.com[i]) for i in range(3)}
+    return values
 
 
 @cache
@@ -109,8 +109,8 @@ def relative_inertia(model: str | Model, angles: Array) -> Array:
 @cache
 def region(model: str | Model) -> Array:
     """Whether the five-d.o.f. system is stable, at (SPRINGS, ANGLES)."""
-    found = st.chart(model, (ANGLE, ANGLES), (STIFFNESS, SPRINGS))
-    return np.asarray(found.stable.values)
+    chart = st.chart(model, (ANGLE, ANGLES), (STIFFNESS, SPRINGS))
+    return np.asarray(chart.stable.values)
 
 
 @cache
@@ -126,7 +126,7 @@ def edges(model: str | Model) -> tuple[Array, Array]:
     """
     inside = region(model)
     some = np.flatnonzero(inside.any(0))
-    found = np.full((2, len(ANGLES)), np.nan)
+    ends = np.full((2, len(ANGLES)), np.nan)
     last = len(SPRINGS) - 1
     first_in = inside[:, some].argmax(0)
     last_in = last - inside[::-1, some].argmax(0)
@@ -137,8 +137,8 @@ def edges(model: str | Model) -> tuple[Array, Array]:
             rates = st.growth_rates(model, {ANGLE: ANGLES[some], STIFFNESS: middle})
             stable = np.where(rates <= GROWS, middle, stable)
             unstable = np.where(rates <= GROWS, unstable, middle)
-        found[row, some] = stable
-    return found[0], found[1]
+        ends[row, some] = stable
+    return ends[0], ends[1]
 
 
 def width(model: str | Model, angle: float = STRAIGHT) -> float:

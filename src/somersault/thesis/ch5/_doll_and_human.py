@@ -31,8 +31,8 @@ def fig_5_2() -> Result:
     human = doll.ratios(MODEL, ANGLES)
     dolls = {name: doll.ratios(name, ANGLES) for name in (WEIGHTED, BARE)}
     off = {
-        name: [float(np.abs(a - b).max()) for a, b in zip(human, found, strict=True)]
-        for name, found in dolls.items()
+        name: [float(np.abs(a - b).max()) for a, b in zip(human, ratios, strict=True)]
+        for name, ratios in dolls.items()
     }
     inside = [bool(np.all((k1 > 0) & (k3 < 0))) for k1, k3 in (human, *dolls.values())]
     claims = (
@@ -49,7 +49,7 @@ def fig_5_2() -> Result:
     return Result(
         "Rigid body inertia ratios of the doll (dotted) and the human (solid) for arm angles of 0 "
         "to 3 rad: the doll has nearly the same ratios as the human model.",
-        f"k3 is nearly the same (within {off[WEIGHTED][1]:.3f}; of the bare doll "
+        f"k3 is nearly the same (within {off[WEIGHTED][1]:.3f}; for the bare doll "
         f"{off[BARE][1]:.3f}). k1 is not: the weighted doll's is lower by up to "
         f"{off[WEIGHTED][0]:.2f}, the bare one's by up to {off[BARE][0]:.2f}, and so the doll held "
         "rigid is the less unstable of the two.",
@@ -65,8 +65,8 @@ def _nearly(
 ) -> list[Claim]:
     """Four claims: k1 and k3 of either doll against the human's."""
     printed, mixed = (
-        max(float(np.abs(a - b).max()) for a, b in zip(human, found, strict=True))
-        for found in (doll.ratios(doll.as_printed(name), ANGLES) for name in (WEIGHTED, BARE))
+        max(float(np.abs(a - b).max()) for a, b in zip(human, ratios, strict=True))
+        for ratios in (doll.ratios(doll.as_printed(name), ANGLES) for name in (WEIGHTED, BARE))
     )
     small = float(doll.relative_inertia(doll.as_printed(BARE), np.array(STRAIGHT)))
     needed, fit = _heavier_body()
@@ -76,7 +76,8 @@ def _nearly(
         f"(I2 − I3)/I1 falls. The printed rl3 = 0.0572 m leaves the weighted doll {printed:.2f} "
         "away. Printed numbers come near only if the columns are mixed: the bare arm's 27.5 g at "
         f"0.0572 m, within {mixed:.2f}; but that arm's I_rel is {small:.3f}, the human's, and "
-        f"figure 5-3 says more. Ib1 = {needed:.4f} for 0.0041 kg m², Ib2 raised with it, would "
+        f"figure 5-3 says more. Ib1 = {needed:.4f} instead of 0.0041 kg m², Ib2 raised with it, "
+        "would "
         f"bring the bare doll within {fit:.3f}; but a uniform rod of the body's mass and 15 inches "
         f"has {rod:.4f}. So figure 5-2 was drawn from other numbers, or “nearly” is meant more "
         "widely than here."
@@ -84,7 +85,7 @@ def _nearly(
     here = int(np.argmin(np.abs(ANGLES - NOMINAL)))
     notes = {"k1": why, "k1-bare": " As for the weighted doll, fig5-2.k1."}
     claims = []
-    for name, found in dolls.items():
+    for name, ratios in dolls.items():
         for i, ratio in enumerate(("k1", "k3")):
             tag = ratio if name == WEIGHTED else f"{ratio}-bare"
             claims.append(
@@ -94,7 +95,7 @@ def _nearly(
                     f"{ratio} of the {'weighted' if name == WEIGHTED else 'bare'} doll is nearly "
                     "the human's at all arm angles",
                     f"nearly the same: within {_NEAR:g}",
-                    f"within {off[name][i]:.3f}; at Γ = {ANGLES[here]:g} {found[i][here]:.3f} "
+                    f"within {off[name][i]:.3f}; at Γ = {ANGLES[here]:g} {ratios[i][here]:.3f} "
                     f"against {human[i][here]:.3f}",
                     off[name][i] <= _NEAR,
                     "“Nearly” read as a tenth of the diagram's axis." + notes.get(tag, ""),
@@ -119,8 +120,8 @@ def _draw_5_2(human: tuple[Array, Array], dolls: dict[str, tuple[Array, Array]])
     from somersault.view import charts
     from somersault.view import style as look
 
-    made = look.figure(9.0, 4.4)
-    square, along = made.subplots(1, 2, width_ratios=(1.15, 1))
+    picture = look.figure(9.0, 4.4)
+    square, along = picture.subplots(1, 2, width_ratios=(1.15, 1))
     charts.growth_curves(square, (2.6, 3.0, 3.5, 4.0, 4.5), (0.93, 0.86, 0.52, 0.385, 0.385))
     square.set(xlim=(0.36, 0.96), ylim=(-0.95, -0.6), title="Tenfold growth in Φ rad (grey curves)")
     square.set(xlabel="$k_1$", ylabel="$k_3$")
@@ -145,7 +146,7 @@ def _draw_5_2(human: tuple[Array, Array], dolls: dict[str, tuple[Array, Array]])
     look.label(along, 1.5, 0.76, "human", _LOOKS[MODEL][0], ha="center")
     look.label(along, 1.5, 0.595, "bare doll", _LOOKS[BARE][0], ha="center")
     look.label(along, 1.5, 0.36, "weighted doll", _LOOKS[WEIGHTED][0], ha="center")
-    return made
+    return picture
 
 
 # ---------------------------------------------------------------------------- figure 5-3
@@ -158,8 +159,8 @@ def fig_5_3() -> Result:
     ratio, bare = ours / human, relative[BARE] / human
     masses = {}
     for name in _LOOKS:
-        found = doll.parameters(name)
-        masses[name] = 2 * found["ml"] / (found["mb"] + 2 * found["ml"])
+        values = doll.parameters(name)
+        masses[name] = 2 * values["ml"] / (values["mb"] + 2 * values["ml"])
     straight = float(doll.relative_inertia(MODEL, np.array(np.pi / 2)))
     where = "§5.2.1, Figure 5-3"
     claims = (
@@ -205,8 +206,8 @@ def fig_5_3() -> Result:
 def _draw_5_3(relative: dict[str, Array]) -> Figure:
     from somersault.view import style as look
 
-    made = look.figure(6.2, 3.9)
-    ax = made.add_subplot()
+    picture = look.figure(6.2, 3.9)
+    ax = picture.add_subplot()
     for name, values in relative.items():
         color, line = _LOOKS[name]
         ax.plot(ANGLES, values, color=color, ls=line)
@@ -217,4 +218,4 @@ def _draw_5_3(relative: dict[str, Array]) -> Figure:
     look.label(ax, 2.0, 0.085, "bare doll", _LOOKS[BARE][0])
     look.label(ax, 2.0, 0.049, "human", _LOOKS[MODEL][0])
     look.pointer(ax, (np.pi / 2, 0.06), (1.1, 0.03), "× Table 4.3: 0.06")
-    return made
+    return picture

@@ -31,7 +31,7 @@ def table_5_1() -> Result:
     where = "Table 5.1"
     misprint = (
         f"A misprint (errata): the bare arm and 30 g at 0.043 m balance at {centre:.4f} m, and "
-        "only so is I_sh the 3.021e-4 kg m² of §5.5; with 0.0572 m it would be "
+        "only then is I_sh the 3.021e-4 kg m² of §5.5; with 0.0572 m it would be "
         f"{1e4 * shoulder_inertia(as_printed()):.3f}e-4. Figure 5-5 shows what else it changes."
     )
     claims, rows = [], []
@@ -91,9 +91,9 @@ def table_5_1() -> Result:
         "Body parameters of the doll without arm weights and with 30 g on each arm, 0.043 m from "
         "the shoulder. All data of chapter 5 are for the second.",
         "Mostly a transcription: the shipped models doll and doll_weighted were made from this "
-        "table, so that each parameter's claim only says that it was copied without a slip. What "
-        "could fail are the sums at the end, of numbers printed elsewhere or of each other. The "
-        "models carry the table's numbers but one: rl3 = 0.0572 m of "
+        "table, so each parameter's claim only says that it was copied without a slip. What could "
+        "fail are the checks at the end, of these numbers against each other and against numbers "
+        "printed elsewhere. The models carry all of the table's numbers but one: rl3 = 0.0572 m of "
         f"the weighted arm contradicts the table's own masses, which give {centre:.4f} m.",
         tuple(claims),
         table=Table(header, tuple(rows)),

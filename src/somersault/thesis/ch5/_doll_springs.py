@@ -192,8 +192,8 @@ def _draw_5_5() -> Figure:
     from somersault.view import charts
     from somersault.view import style as look
 
-    made = look.figure(9.4, 4.8)
-    whole, near = made.subplots(1, 2, width_ratios=(1.2, 1))
+    picture = look.figure(9.4, 4.8)
+    whole, near = picture.subplots(1, 2, width_ratios=(1.2, 1))
     charts.chart_axes(whole, "The weighted doll, five degrees of freedom")
     near.set(xlim=(1.3, 1.8), ylim=(0, 2), xlabel="arm angle Γ (rad)", title="The same, nearer")
     for ax in (whole, near):
@@ -211,4 +211,4 @@ def _draw_5_5() -> Figure:
     look.pointer(near, (1.36, 1.55), (1.33, 1.85), "dashed: rl3 as printed")
     look.label(near, 1.38, 1.2, "human", look.VERMILION)
     look.label(near, 1.55, 0.88, "0.82", ha="right")
-    return made
+    return picture

@@ -61,8 +61,8 @@ class FiveSprings:
 @cache
 def _chances() -> dict[str, Array]:
     """The probability of what was seen with each of STIFFNESSES, were that its role."""
-    found = swept(SCATTER)
-    columns = (likelihood.smoothed(found), found.mean, found.deviation)
+    outcome = swept(SCATTER)
+    columns = (likelihood.smoothed(outcome), outcome.mean, outcome.deviation)
     return {role: likelihood.of_spring(*columns, role) for role in ("best", "stiffest", "softer")}
 
 
@@ -89,12 +89,12 @@ def _sets() -> Iterator[FiveSprings]:
 @cache
 def best_sets() -> dict[int, FiveSprings]:
     """The most probable five, by how many of them are stiffer than 0.82."""
-    found: dict[int, FiveSprings] = {}
-    for made in _sets():
-        before = found.get(made.stiffer)
-        if made.stiffer and (before is None or made.probability > before.probability):
-            found[made.stiffer] = made
-    return found
+    best: dict[int, FiveSprings] = {}
+    for five in _sets():
+        before = best.get(five.stiffer)
+        if five.stiffer and (before is None or five.probability > before.probability):
+            best[five.stiffer] = five
+    return best
 
 
 def springs_tried() -> Result:
@@ -180,14 +180,14 @@ def _claims(ours: FiveSprings, apart: FiveSprings) -> list[Claim]:
 def _draw() -> Figure:
     from somersault.view import style as look
 
-    made = look.figure(9.2, 4.2)
-    left, right = made.subplots(1, 2)
-    shown = ((SMALLER, look.SKY, "half the scatter"), (SCATTER, look.BLUE, "the scatter found"))
+    picture = look.figure(9.2, 4.2)
+    left, right = picture.subplots(1, 2)
+    shown = ((SMALLER, look.SKY, "half the scatter"), (SCATTER, look.BLUE, "the full scatter"))
     low, high = doll.springs(WEIGHTED, ARMS)[0]
     for scatter, color, _ in shown:
-        found = swept(scatter)
-        left.plot(STIFFNESSES, 100 * found.share, color=color)
-        right.plot(STIFFNESSES, found.mean, color=color)
+        outcome = swept(scatter)
+        left.plot(STIFFNESSES, 100 * outcome.share, color=color)
+        right.plot(STIFFNESSES, outcome.mean, color=color)
     ours = swept(SCATTER)
     right.fill_between(
         STIFFNESSES, ours.mean - ours.deviation, ours.mean + ours.deviation, color=look.BLUE,
@@ -206,7 +206,7 @@ def _draw() -> Figure:
     right.set(ylim=(0, 4), ylabel="somersaults, mean (band: ± deviation)")
     look.label(left, (low + high) / 2, 104, "stable by linear theory", look.GREY, ha="center")
     look.label(left, 1.48, 70, "half the scatter", look.SKY)
-    look.label(left, 1.52, 30, "the scatter found", look.BLUE)
+    look.label(left, 1.52, 30, "the full scatter", look.BLUE)
     look.pointer(left, (OMITTED, 90), (0.95, 62), "left out", look.VERMILION, ha="center")
     look.label(left, 0.05, 50, "the five\nsprings", look.VERMILION)
-    return made
+    return picture

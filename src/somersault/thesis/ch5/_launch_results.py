@@ -45,13 +45,13 @@ def repeated() -> dict[str, Array]:
     "stable" (repeats, conditions) how many of twenty, "mean" and "deviation" of somersaults.
     """
     many, draw = experiment.many(), np.random.default_rng(SEED)
-    found = {name: np.empty((_REPEATS, len(_NAMES))) for name in ("stable", "mean", "deviation")}
+    results = {name: np.empty((_REPEATS, len(_NAMES))) for name in ("stable", "mean", "deviation")}
     for k in range(len(_NAMES)):
         chosen = draw.integers(0, MANY, (_REPEATS, LAUNCHES))
         seen = many.somersaults[k][chosen]
-        found["stable"][:, k] = many.stable[k][chosen].sum(1)
-        found["mean"][:, k], found["deviation"][:, k] = seen.mean(1), seen.std(1, ddof=1)
-    return found
+        results["stable"][:, k] = many.stable[k][chosen].sum(1)
+        results["mean"][:, k], results["deviation"][:, k] = seen.mean(1), seen.std(1, ddof=1)
+    return results
 
 
 def fig_5_7() -> Result:
@@ -69,7 +69,8 @@ def fig_5_7() -> Result:
         "variance seems to increase with softer springs; rigid arms reliably somersault once.",
         f"With the scatter of docs/doll.md ({SCATTER.attitude:g} rad, {SCATTER.rates:g} rad/s, "
         f"{SCATTER.arms:g} rad, {100 * SCATTER.pretension:g} %) and springs of our choice, except "
-        "0.82, the same picture. A launch that stays stable counts what it does until the catch.",
+        "0.82, the same picture. A launch that stays stable counts the somersaults it makes until "
+        "the catch.",
         tuple(_claims_5_7(many)),
         _draw_5_7(few, many),
         Table(("K_sh", "20 launches", "2,000 launches", "the mean's 95 % interval ±"), tuple(rows)),
@@ -147,8 +148,8 @@ def _claims_5_7(many: Outcome) -> list[Claim]:
             f"{', '.join(_NAMES[:BEST_AT])}; in {100 * rises:.0f} % of experiments of twenty "
             "launches the softest has the greatest", bool(np.all(np.diff(deviation[_SOFT]) < 0)),
             "It is greatest a little below 0.82, where some launches stay stable to the catch and "
-            "others do not, and falls for the softest, few of which do. Twenty launches tell a "
-            "deviation to a sixth of itself: hence, perhaps, “appears”.",
+            "others do not, and falls for the softest, few of which do. Twenty launches give a "
+            "deviation to within a sixth of itself: hence, perhaps, “appears”.",
         ),
         statement(
             "fig5-7.stiff-reliable", "§5.6", "stiff springs make the doll more reliable but less "
@@ -173,8 +174,8 @@ def fig_5_8() -> Result:
     return Result(
         "The percentage of twenty launches that were stable to the end, against K_sh: 90 % (18 of "
         "20) with 0.82, some with softer springs, none with the stiffest and with rigid arms.",
-        f"From 18 of 20 one may conclude {_of_eighteen()}, and no more: figures with 2,000 "
-        "launches a condition tell apart what twenty do not.",
+        f"From 18 of 20 one may conclude {_of_eighteen()}, and no more: 2,000 launches for each "
+        "condition tell apart what twenty cannot.",
         tuple(_claims_5_8(many)),
         _draw_5_8(few, wide, narrow),
         Table(("K_sh", "20 launches", "95 % interval", "2,000 launches", "95 % interval",
@@ -212,7 +213,7 @@ def _claims_5_8(many: Outcome) -> list[Claim]:
             f"{100 * share[BEST_AT]:.1f} % ({_span(span, BEST_AT)}); 18 or more of 20 with "
             f"probability {eighteen:.2f}", low[BEST_AT] <= 0.95 and high[BEST_AT] >= 0.85,
             "Holds when the interval of 2,000 launches meets 17 to 19 of 20. The scatter was "
-            "chosen for it among others.",
+            "chosen to fit this result among others.",
         ),
         statement(
             "fig5-8.outperforms", where, "one spring clearly outperformed the rest", "0.82",
@@ -274,8 +275,8 @@ def _bars(ax: Axes, x: Array, y: Array, reach: Any, color: str, marker: str, nam
 def _draw_5_7(few: Outcome, many: Outcome) -> Figure:
     from somersault.view import style as look
 
-    made = look.figure(7.4, 4.3)
-    ax = made.add_subplot()
+    picture = look.figure(7.4, 4.3)
+    ax = picture.add_subplot()
     at = _axes(ax)
     _bars(ax, at - 0.02, few.mean, few.deviation, look.VERMILION, "o", "20 launches")
     _bars(ax, at + 0.02, many.mean, many.deviation, look.BLUE, "s", "2,000 launches")
@@ -285,14 +286,14 @@ def _draw_5_7(few: Outcome, many: Outcome) -> Figure:
     look.label(ax, 1.2, 3.62, "caught", look.GREY)
     look.label(ax, 0.87, 3.0, "0.82", look.BLACK)
     ax.legend(loc="lower left", frameon=False, fontsize=9)
-    return made
+    return picture
 
 
 def _draw_5_8(few: Outcome, wide: xr.Dataset, narrow: xr.Dataset) -> Figure:
     from somersault.view import style as look
 
-    made = look.figure(7.4, 4.3)
-    ax = made.add_subplot()
+    picture = look.figure(7.4, 4.3)
+    ax = picture.add_subplot()
     at = _axes(ax)
     for share, shift, color, marker, name in (
         (wide, -0.02, look.VERMILION, "o", f"{LAUNCHES} launches"),
@@ -306,4 +307,4 @@ def _draw_5_8(few: Outcome, wide: xr.Dataset, narrow: xr.Dataset) -> Figure:
     ax.set_title("Share of stable launches, 95 % intervals")
     look.pointer(ax, (SPRINGS[BEST_AT], 90), (1.15, 84), "× the laboratory's 18 of 20")
     ax.legend(loc="upper right", frameon=False, fontsize=9)
-    return made
+    return picture

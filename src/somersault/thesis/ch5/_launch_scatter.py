@@ -96,16 +96,16 @@ def chances(outcome: Outcome) -> Chances:
 @cache
 def scan() -> Array:
     """The probability of all six results, for every combination of `AXES`."""
-    found = np.zeros([len(values) for values in AXES.values()])
+    probabilities = np.zeros([len(values) for values in AXES.values()])
     rigid: dict[tuple[float, ...], Outcome] = {}
-    for place in product(*(range(n) for n in found.shape)):
+    for place in product(*(range(n) for n in probabilities.shape)):
         at = Scatter(*(v[k] for v, k in zip(AXES.values(), place, strict=True)))
         key = astuple(at)[:3]  # clamped arms have no pretension
         if key not in rigid:
             rigid[key] = experiment.clamped(at, _DRAWN, sequence="sobol")
         sprung = experiment.sprung(SPRINGS, at, _DRAWN, sequence="sobol")
-        found[place] = chances(sprung.with_(rigid[key])).together
-    return found
+        probabilities[place] = chances(sprung.with_(rigid[key])).together
+    return probabilities
 
 
 def profile(name: str) -> Array:
@@ -116,8 +116,8 @@ def profile(name: str) -> Array:
 
 def allowed(name: str) -> list[float]:
     """Values of a deviation that are within the 95 % region."""
-    found = profile(name)
-    inside = np.log(found + 1e-300) > np.log(scan().max()) - _REGION
+    probabilities = profile(name)
+    inside = np.log(probabilities + 1e-300) > np.log(scan().max()) - _REGION
     return [value for value, good in zip(AXES[name], inside, strict=True) if good]
 
 
@@ -138,9 +138,10 @@ def estimate() -> Result:
         f"{100 * SCATTER.pretension:g} % in pretension all six results come out together with "
         f"probability {ours.together:.3f}: "
         + ", ".join(f"{name} {p:.2f}" for name, p in zip(names, ours.each, strict=True))
-        + ". Of exactly 18 of 20 no scatter makes more than 0.29. Six results do not determine "
-        "four deviations: of attitude and rates only the size of the growing wobble, to which both "
-        "add; and that arm angle or pretension, either of them, spoils a launch in ten with 0.82.",
+        + ". No scatter makes exactly 18 of 20 more probable than 0.29. Six results do not "
+        "determine "
+        "four deviations: for attitude and rates they give only the size of the growing wobble, to "
+        "which both add; and either arm angle or pretension spoils one launch in ten with 0.82.",
         tuple(_claims(ours)),
         _draw(),
         Table(("deviation of", "unit", "taken", "tried", "within 95 %", "probability of all six"),
@@ -153,23 +154,23 @@ def _listed(values: tuple[float, ...] | list[float]) -> str:
 
 
 def _claims(ours: Chances) -> list[Claim]:
-    found = scan()
-    best = np.unravel_index(found.argmax(), found.shape)
+    chance = scan()
+    best = np.unravel_index(chance.argmax(), chance.shape)
     at = Scatter(*(v[int(k)] for v, k in zip(AXES.values(), best, strict=True)))
     small = all(
         low <= getattr(at, name) <= high
         for name, (low, high) in {"attitude": (0.0, 0.1), "rates": (0.0, 1.66)}.items()
     )
-    ridge = found.max((2, 3))
+    ridge = chance.max((2, 3))
     both_small, both_large = ridge[0, 0], ridge[-1, -1]
     rates_alone, attitude_alone = ridge[0].max(), ridge[:, 0].max()
-    edge = found.max() * np.exp(-_REGION)
+    edge = chance.max() * np.exp(-_REGION)
     return [
         statement(
             "ch5-scatter.exists", "§5.5", "some plausible scatter gives all six results together",
-            "agreement", f"probability {found.max():.3f} at best, {ours.together:.3f} with ours; "
+            "agreement", f"probability {chance.max():.3f} at best, {ours.together:.3f} with ours; "
             f"at best {at.attitude:g} rad, {at.rates:g} rad/s, {at.arms:g} rad, "
-            f"{at.pretension:g}", found.max() > 0.02 and ours.together > 0.02 and small,
+            f"{at.pretension:g}", chance.max() > 0.02 and ours.together > 0.02 and small,
             "Holds above 0.02, with an attitude to within 0.1 rad and rates within a tenth of the "
             "spin: what a clamp can do. Six results, each as likely as 18 of 20 is at best, would "
             "have 0.0005.",
@@ -197,20 +198,20 @@ def _claims(ours: Chances) -> list[Claim]:
 def _draw() -> Figure:
     from somersault.view import style as look
 
-    made = look.figure(9.2, 4.0)
-    left, right = made.subplots(1, 2)
-    found = scan()
+    picture = look.figure(9.2, 4.0)
+    left, right = picture.subplots(1, 2)
+    chance = scan()
     pairs = (
-        (left, "attitude", "rates", found.max((2, 3)), "tilt and twist (rad)", "rates (rad/s)"),
-        (right, "arms", "pretension", found.max((0, 1)), "arm angle (rad)", "pretension (of it)"),
+        (left, "attitude", "rates", chance.max((2, 3)), "tilt and twist (rad)", "rates (rad/s)"),
+        (right, "arms", "pretension", chance.max((0, 1)), "arm angle (rad)", "pretension (of it)"),
     )
     for ax, x, y, values, x_name, y_name in pairs:
         shown = ax.pcolormesh(
             np.arange(len(AXES[x])), np.arange(len(AXES[y])), values.T, cmap=look.darkening(),
-            vmin=0, vmax=found.max(), edgecolors="white", linewidth=1.0,
+            vmin=0, vmax=chance.max(), edgecolors="white", linewidth=1.0,
         )  # fmt: skip
         for i, j in product(range(values.shape[0]), range(values.shape[1])):
-            dark = values[i, j] > 0.3 * found.max()
+            dark = values[i, j] > 0.3 * chance.max()
             ax.text(
                 i, j, f"{values[i, j]:.3f}", ha="center", va="center", fontsize=8.5,
                 color="white" if dark else look.BLACK,
@@ -220,5 +221,5 @@ def _draw() -> Figure:
         ax.set(xlabel=f"deviation of {x_name}", ylabel=f"deviation of {y_name}")
     left.set_title("Probability of all six results")
     right.set_title("… the other two deviations at their best")
-    made.colorbar(shown, ax=[left, right], shrink=0.8)
-    return made
+    picture.colorbar(shown, ax=[left, right], shrink=0.8)
+    return picture

@@ -194,11 +194,11 @@ def _side(joint: str) -> int:
     return 1 if joint.startswith("left") else -1
 
 
-def _mount(made: Launch, rest: float) -> Mount:
+def _mount(throw: Launch, rest: float) -> Mount:
     i = CLAMP_INERTIA
     clamp = Body(
         _CLAMP, GROUND, CLAMP_MASS, (0.0, 0.0, -CLAMP_AT),
         ((i, 0.0, 0.0), (0.0, i, 0.0), (0.0, 0.0, i)), position=(0.0, 0.0, BAR_HEIGHT),
         joints=(Joint(_BAR, "hinge", (0.0, 1.0, 0.0), stiffness=SPRING, rest=rest),),
     )  # fmt: skip
-    return mounted(made.doll, clamp, (0.0, 0.0, -made.reach - HEAD))
+    return mounted(throw.doll, clamp, (0.0, 0.0, -throw.reach - HEAD))

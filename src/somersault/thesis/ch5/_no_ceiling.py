@@ -69,10 +69,10 @@ def resonance() -> float:
     """The K_sh at which the arms' symmetric oscillation is twice as fast as the slow wobble."""
 
     def slowest(subsystem: str) -> Array:
-        found = st.root_locus(
+        locus = st.root_locus(
             WEIGHTED, (STIFFNESS, STIFFNESSES[_BETWEEN]), fixed={ANGLE: ARMS}, subsystem=subsystem
         ).frequency.values
-        return np.where(found > 1e-3, found, np.inf).min(1)
+        return np.where(locus > 1e-3, locus, np.inf).min(1)
 
     off = slowest("somersault") - 2 * slowest("tilt")
     return float(np.interp(0.0, off, STIFFNESSES[_BETWEEN]))
@@ -84,17 +84,18 @@ def ceiling() -> Result:
     at = int(np.argmin(np.abs(STIFFNESSES - BEST)))
     rows = []
     for share in SHARES:
-        found, (best, ranges) = flown(share), margin(share)
-        middle = np.median(found.somersaults[at])
+        outcome, (best, ranges) = flown(share), margin(share)
+        middle = np.median(outcome.somersaults[at])
         rows.append((
-            f"{share:g}", f"{100 * found.share[at]:.0f} %", _count(middle), f"{best:.2f}",
-            f"{100 * found.share.max():.0f} %", _spoken(ranges),
+            f"{share:g}", f"{100 * outcome.share[at]:.0f} %", _count(middle), f"{best:.2f}",
+            f"{100 * outcome.share.max():.0f} %", _spoken(ranges),
         ))  # fmt: skip
     best, ranges = margin(0.5)
     return Result(
         "If we could have observed more somersaults, the doll may have exhibited a variance more "
         "in accordance with the remaining data (§5.5): the ceiling hid how long it lasts.",
-        f"Thirty somersaults' time, at the laboratory's scatter and less. With half of it the best "
+        "Flights long enough for thirty somersaults, at the laboratory's scatter and less. With "
+        "half of it the best "
         f"springs are about K_sh = {best:.2f}, and {_spoken(ranges)} do nine tenths as "
         f"well; the linear theory's range at Γ = {ARMS:g} is {low:.2f} to {high:.2f}. The "
         f"laboratory's 0.82 is low in both. Near {resonance():.2f} the symmetric and the "
@@ -180,17 +181,17 @@ def _claims(at: int) -> list[Claim]:
 def _draw() -> Figure:
     from somersault.view import style as look
 
-    made = look.figure(9.2, 4.2)
-    left, right = made.subplots(1, 2)
+    picture = look.figure(9.2, 4.2)
+    left, right = picture.subplots(1, 2)
     (low, high), *_ = doll.springs(WEIGHTED, ARMS)
     names = ("the laboratory's scatter", "half of it", "a quarter", "a tenth")
     colors: list[str] = [look.BLUE, look.VERMILION, look.GREEN, look.BLACK]
     lines = ("-", "--", "-.", ":")
     for share, color, line, name in zip(SHARES, colors, lines, names, strict=True):
-        found = flown(share)
-        left.plot(STIFFNESSES, 100 * found.share, color=color, ls=line, label=name)
+        outcome = flown(share)
+        left.plot(STIFFNESSES, 100 * outcome.share, color=color, ls=line, label=name)
         right.plot(
-            STIFFNESSES, np.median(found.somersaults, 1), color=color, ls=line, label=name
+            STIFFNESSES, np.median(outcome.somersaults, 1), color=color, ls=line, label=name
         )  # fmt: skip
     for ax in (left, right):
         ax.axvspan(low, high, color=look.PALE, zorder=0)
@@ -203,4 +204,4 @@ def _draw() -> Figure:
     look.label(right, (low + high) / 2, 2.0, "stable by linear theory", look.GREY, ha="center")
     look.label(left, BEST + 0.01, 5, "0.82", look.GREY)
     look.pointer(left, (resonance(), 60), (resonance(), 22), "2 : 1 resonance", ha="center")
-    return made
+    return picture

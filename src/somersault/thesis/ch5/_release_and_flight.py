@@ -40,8 +40,8 @@ _WRONG = 0.2  # of the pretension: an error that one makes by hand
 
 def sec_5_4() -> Result:
     """The swing, the rods, the release and the flight."""
-    made = launch()
-    wound, left = made.spring_torques
+    throw = launch()
+    wound, left = throw.spring_torques
     return Result(
         "The doll, held in a clamp by the rod on its head, is wound round a horizontal bar "
         "against a torsion spring and let go. At about Φ = π/2 the clamp opens. The rate of "
@@ -50,13 +50,13 @@ def sec_5_4() -> Result:
         "about its own centre of mass.",
         f"The launcher's dimensions are ours (docs/doll.md). Its spring, tensioned for {SPIN} "
         f"rad/s, gives {wound:.1f} N m wound one turn back and {left:.1f} N m at the release, "
-        f"{made.swing.times[-1]:.2f} s later. The doll leaves upwards at {made.path.climb:.2f} "
-        f"m/s and at {-made.release.takeoff.velocity[0]:.2f} m/s away from the bar: at Φ = π/2 "
+        f"{throw.swing.times[-1]:.2f} s later. The doll leaves upwards at {throw.path.climb:.2f} "
+        f"m/s and at {-throw.release.takeoff.velocity[0]:.2f} m/s away from the bar: at Φ = π/2 "
         f"exactly it would come down onto the clamp, so Φ = {RELEASE} rad is taken. A rod bears up "
-        f"to {made.rod_torque.max():.2f} N m about the shoulder before the release, and what the "
-        "pretension is wrong by after it.",
-        (*_flight_claims(made), *_rod_claims(made), _carried(made)),
-        _draw(made),
+        f"to {throw.rod_torque.max():.2f} N m about the shoulder before the release, and after it "
+        "only what the pretension is wrong by.",
+        (*_flight_claims(throw), *_rod_claims(throw), _carried(throw)),
+        _draw(throw),
         Table(
             ("bar to head", "leaves at", "highest bar", f"somersaults, caught at {_CATCHES[0]} m",
              f"at {_CATCHES[1]} m"),
@@ -92,39 +92,39 @@ def _fit(reach: float) -> _Fit:
     return _Fit(reach, climb, bar, tuple(SPIN * time / (2 * np.pi) for time in times))
 
 
-def _turns(made: Launch) -> float:
+def _turns(throw: Launch) -> float:
     """Somersaults to the catch of the doll itself, whose rate is not quite steady, in flight."""
-    flight = fly(made.doll, made.release.takeoff, made.time(), samples=2)
+    flight = fly(throw.doll, throw.release.takeoff, throw.time(), samples=2)
     return (flight.landing.somersault - RELEASE) / (2 * np.pi)
 
 
-def _flight_claims(made: Launch) -> list[Claim]:
+def _flight_claims(throw: Launch) -> list[Claim]:
     fit = [f for f in map(_fit, _REACHES) if _BARS[0] <= f.bar <= _BARS[1]]
     few, many = (pick(t for f in fit for t in f.somersaults) for pick in (min, max))
-    times = np.linspace(0, made.time(), 400)
-    top = float(made.path.at(times)[:, 2].max()) + launcher.radius()
+    times = np.linspace(0, throw.time(), 400)
+    top = float(throw.path.at(times)[:, 2].max()) + launcher.radius()
     angles = np.linspace(RELEASE - 0.6, RELEASE + 0.6, 121)
-    climbs = made.path.climb / np.sin(RELEASE) * np.sin(angles)
+    climbs = throw.path.climb / np.sin(RELEASE) * np.sin(angles)
     best = float(angles[np.argmax(climbs)])
-    wound = made.spring_torques[0]
-    beside = -float(made.path.at(times[-1:])[0, 0])
+    wound = throw.spring_torques[0]
+    beside = -float(throw.path.at(times[-1:])[0, 0])
     where = "§5.2.2, §5.5"
     return [
         number(
             "sec5-4.rate", "§5.5", "the doll's somersault rate as it is let go", SPIN,
-            float(made.swing.u[-1, 0]), "rad/s", 0.05,
+            float(throw.swing.u[-1, 0]), "rad/s", 0.05,
             "The spring is tensioned for it by the energy of a doll with still arms; the swing is "
             "integrated with arms that move against rods, and could end elsewhere.",
         ),
         statement(
             "sec5-4.spring", "§5.2.2", "doll and clamp can be wound round the bar by hand",
             "wound", f"{wound:.2f} N m for one turn back, "
-            f"{wound / made.out:.0f} N at the doll", wound < _STRONG,
+            f"{wound / throw.out:.0f} N at the doll", wound < _STRONG,
             f"Holds below {_STRONG:g} N m. More turns would need less.",
         ),
         number(
             "sec5-4.somersaults", where, "somersaults from release to the catch", SOMERSAULTS,
-            _turns(made), "1", 0.25,
+            _turns(throw), "1", 0.25,
             f"With the bar at {BAR_HEIGHT} m and hands at {launcher.CATCH} m, both ours.",
         ),
         statement(
@@ -142,8 +142,8 @@ def _flight_claims(made: Launch) -> list[Claim]:
         statement(
             "sec5-4.half-pi", "§5.4", "released at about π/2 round the bar", "approximately π/2",
             f"the flight is longest for {best:.2f} rad; at {RELEASE} the doll comes down "
-            f"{beside:.2f} m beside the bar, at π/2 {made.out:.2f} m",
-            abs(best - np.pi / 2) < 0.1 and beside > made.out + launcher.radius(),
+            f"{beside:.2f} m beside the bar, at π/2 {throw.out:.2f} m",
+            abs(best - np.pi / 2) < 0.1 and beside > throw.out + launcher.radius(),
             "Between these two angles the doll leaves almost straight up.",
         ),
     ]  # fmt: skip
@@ -152,26 +152,26 @@ def _flight_claims(made: Launch) -> list[Claim]:
 # ---------------------------------------------------------------------------------- rods
 
 
-def _free_load(made: Launch, share: float) -> float:
+def _free_load(throw: Launch, share: float) -> float:
     """What a rod has to give just after the release, N m, with a share of the pretension."""
-    return _steady_load(made) + (1 - share) * made.pretension
+    return _steady_load(throw) + (1 - share) * throw.pretension
 
 
 @cache
-def _steady_load(made: Launch) -> float:
+def _steady_load(throw: Launch) -> float:
     """What keeps the left arm of the free doll on its rod, with the springs as they are, N m."""
-    free = Equations(made.doll)
+    free = Equations(throw.doll)
     arms = np.array([launcher.ARMS, -launcher.ARMS])
-    speeds = np.concatenate([made.spin, np.zeros(5)])
+    speeds = np.concatenate([throw.spin, np.zeros(5)])
     # Of torques of the left arm and, mirrored, of the right: none, and one newton metre.
     none, one = free.forward_dynamics(arms, speeds, [[0.0, 0.0], [1.0, -1.0]])[:, 6]
     return float(-none / (one - none))
 
 
-def _rod_claims(made: Launch) -> list[Claim]:
-    load, pretension = made.rod_torque, -made.pretension
-    weight = _weight_of_arm(made)
-    after = [_free_load(made, share) for share in (1 - _WRONG, 1.0, 1 + _WRONG)]
+def _rod_claims(throw: Launch) -> list[Claim]:
+    load, pretension = throw.rod_torque, -throw.pretension
+    weight = _weight_of_arm(throw)
+    after = [_free_load(throw, share) for share in (1 - _WRONG, 1.0, 1 + _WRONG)]
     force = float(load.max()) / launcher.ROD_LEVER
     buckles = np.pi**3 * _STEEL * _ROD**4 / 64 / _ROD_LENGTH**2
     return [
@@ -209,18 +209,18 @@ def _rod_claims(made: Launch) -> list[Claim]:
     ]  # fmt: skip
 
 
-def _weight_of_arm(made: Launch) -> float:
+def _weight_of_arm(throw: Launch) -> float:
     """What the weight of an arm straight out gives about its shoulder, N m."""
-    arm = made.doll.bodies[1]
+    arm = throw.doll.bodies[1]
     return float(arm.mass * -GRAVITY[2] * -arm.com[2] * np.sin(launcher.ARMS))
 
 
 # ------------------------------------------------------------------------------- release
 
 
-def _carried(made: Launch) -> Claim:
+def _carried(throw: Launch) -> Claim:
     """Momentum and energy just before, of the held doll less its clamp, and just after."""
-    off = carried(made)
+    off = carried(throw)
     return statement(
         "sec5-4.carried", "§5.2.2", "opening the clamp changes nothing in the doll's motion",
         "released", f"momentum, angular momentum and energy differ by at most {off:.0e} of "
@@ -228,27 +228,27 @@ def _carried(made: Launch) -> Claim:
     )  # fmt: skip
 
 
-def carried(made: Launch) -> float:
+def carried(throw: Launch) -> float:
     """Largest relative difference of momentum, angular momentum and energy across the release.
 
     Before it they are those of the held model, in which the clamp's part is known by itself.
     """
-    held, moving = made.mount.held, made.swing.u[-1, 0]
-    equations, q, u = Equations(held), made.swing.q[-1], made.swing.u[-1]
+    held, moving = throw.mount.held, throw.swing.u[-1, 0]
+    equations, q, u = Equations(held), throw.swing.q[-1], throw.swing.u[-1]
     bar = np.array([0.0, 0.0, BAR_HEIGHT])
     along = np.array([-np.sin(q[0]), 0.0, -np.cos(q[0])])
     across = np.array([-np.cos(q[0]), 0.0, np.sin(q[0])])
     clamp = launcher.CLAMP_MASS * launcher.CLAMP_AT * moving * across
-    own = np.array([0.0, launcher.CLAMP_INERTIA * moving, 0.0])
-    spin = own + np.cross(bar + launcher.CLAMP_AT * along, clamp)
+    clamp_spin = np.array([0.0, launcher.CLAMP_INERTIA * moving, 0.0])
+    spin = clamp_spin + np.cross(bar + launcher.CLAMP_AT * along, clamp)
     whole = equations.momentum(q, u)
-    p, mass = whole[3:] - clamp, made.doll.mass
-    h = whole[:3] - spin - np.cross(made.release.centre, p)
+    p, mass = whole[3:] - clamp, throw.doll.mass
+    h = whole[:3] - spin - np.cross(throw.release.centre, p)
     energy = float(equations.kinetic_energy(q, u)) - 0.5 * float(
-        clamp @ clamp / launcher.CLAMP_MASS + own @ own / launcher.CLAMP_INERTIA
+        clamp @ clamp / launcher.CLAMP_MASS + clamp_spin @ clamp_spin / launcher.CLAMP_INERTIA
     )
-    flight = fly(made.doll, made.release.takeoff, 1e-3, samples=2)
-    v = np.array(made.release.takeoff.velocity)
+    flight = fly(throw.doll, throw.release.takeoff, 1e-3, samples=2)
+    v = np.array(throw.release.takeoff.velocity)
     after = float(flight.kinetic_energy[0] + 0.5 * mass * v @ v)
     first = flight.angular_momentum[0]
     return max(
@@ -261,20 +261,20 @@ def carried(made: Launch) -> float:
 # ------------------------------------------------------------------------------- picture
 
 
-def _draw(made: Launch) -> Figure:
+def _draw(throw: Launch) -> Figure:
     from somersault.view import style as look
 
     picture = look.figure(9.4, 5.0)
     grid = picture.add_gridspec(2, 2, width_ratios=(1.05, 1.25))
     lab = picture.add_subplot(grid[:, 0])
-    _draw_laboratory(lab, made)
+    _draw_laboratory(lab, throw)
     rate, load = (picture.add_subplot(grid[k, 1]) for k in (0, 1))
-    t = made.swing.times - made.swing.times[-1]
-    rate.plot(t, made.swing.u[:, 0], color=look.BLUE)
-    rate.plot([0, 0.3], [made.swing.u[-1, 0]] * 2, color=look.BLUE)
+    t = throw.swing.times - throw.swing.times[-1]
+    rate.plot(t, throw.swing.u[:, 0], color=look.BLUE)
+    rate.plot([0, 0.3], [throw.swing.u[-1, 0]] * 2, color=look.BLUE)
     rate.set(xlim=(t[0], 0.3), ylim=(0, 19), ylabel="somersault rate (rad/s)")
     rate.set_title("Round the bar, then free")
-    spring = made.swing.spring_torques[:, 0]
+    spring = throw.swing.spring_torques[:, 0]
     look.label(
         rate,
         t[0] + 0.05,
@@ -282,11 +282,11 @@ def _draw(made: Launch) -> Figure:
         f"launcher's spring: {spring[0]:.1f} N m wound,\n{spring[-1]:.1f} N m at release",
         look.GREY,
     )
-    load.plot(t, made.rod_torque, color=look.VERMILION)
-    after = [max(_free_load(made, share), 0.0) for share in (1.0, 1 + _WRONG)]
-    load.plot([0, 0, 0.3], [made.rod_torque[-1], after[0], after[0]], color=look.VERMILION)
+    load.plot(t, throw.rod_torque, color=look.VERMILION)
+    after = [max(_free_load(throw, share), 0.0) for share in (1.0, 1 + _WRONG)]
+    load.plot([0, 0, 0.3], [throw.rod_torque[-1], after[0], after[0]], color=look.VERMILION)
     load.fill_between([0, 0.3], after[0], after[1], color=look.VERMILION, alpha=0.35, lw=0)
-    pretension = -made.pretension
+    pretension = -throw.pretension
     load.plot(t, np.full_like(t, pretension), color=look.BLACK, ls="--", lw=1.2)
     load.set(xlim=(t[0], 0.3), ylim=(-0.02, 0.42), xlabel="time from the release (s)")
     load.set_ylabel("a rod's load (N m)")
@@ -299,23 +299,23 @@ def _draw(made: Launch) -> Figure:
     return picture
 
 
-def _draw_laboratory(ax: object, made: Launch) -> None:
+def _draw_laboratory(ax: object, throw: Launch) -> None:
     from matplotlib.axes import Axes
 
     from somersault.view import style as look
 
     assert isinstance(ax, Axes)
-    times = np.linspace(0, made.time(), 200)
-    path = made.path.at(times)
+    times = np.linspace(0, throw.time(), 200)
+    path = throw.path.at(times)
     ax.plot(path[:, 0], path[:, 2], color=look.BLUE, lw=1.2, ls=":")
-    for k, time in enumerate(np.arange(0, made.time(), 2 * np.pi / SPIN / 4)):
+    for k, time in enumerate(np.arange(0, throw.time(), 2 * np.pi / SPIN / 4)):
         angle = RELEASE + SPIN * time
-        centre = made.path.at([time])[0]
+        centre = throw.path.at([time])[0]
         _stick(ax, centre, angle, look.BLUE if k else look.VERMILION)
     for angle in np.arange(-2.4, RELEASE - 0.2, 0.6):
-        centre = _on_bar(made, angle)
+        centre = _on_bar(throw, angle)
         _stick(ax, centre, angle, look.GREY, alpha=0.45)
-    clamp = _on_bar(made, RELEASE, made.reach)
+    clamp = _on_bar(throw, RELEASE, throw.reach)
     ax.plot([0, clamp[0]], [BAR_HEIGHT, clamp[2]], color=look.VERMILION, lw=1.2)
     ax.plot(0, BAR_HEIGHT, "o", color=look.BLACK, ms=6, zorder=6)
     ax.axhline(CEILING, color=look.BLACK, lw=2)
@@ -324,13 +324,13 @@ def _draw_laboratory(ax: object, made: Launch) -> None:
     ax.set_aspect("equal")
     look.label(ax, -1.7, 4.45, "ceiling 4.3 m")
     look.label(ax, 0.12, BAR_HEIGHT + 0.05, "bar")
-    look.label(ax, -1.7, 0.85, f"caught, {_turns(made):.1f}\nsomersaults", look.BLUE)
+    look.label(ax, -1.7, 0.85, f"caught, {_turns(throw):.1f}\nsomersaults", look.BLUE)
     look.label(ax, 0.02, 3.0, "doll in\nthe clamp", look.GREY)
 
 
-def _on_bar(made: Launch, angle: float, reach: float | None = None) -> Array:
+def _on_bar(throw: Launch, angle: float, reach: float | None = None) -> Array:
     """Where something stands at a reach from the bar; the doll's centre of mass if not said."""
-    out = -(made.out if reach is None else reach)
+    out = -(throw.out if reach is None else reach)
     return np.array([0, 0, BAR_HEIGHT]) + out * np.array([np.sin(angle), 0, np.cos(angle)])
 
 

@@ -79,7 +79,8 @@ def friction() -> Result:
         f"Any damper makes the spin unstable, slowly: with a good bearing's friction "
         f"(b/(Ω I_sh) ≈ {bearing():.2f}, ours) the wobble grows by "
         f"{100 * np.expm1(2 * np.pi * _rate(0, bearing())):.0f} % in a somersault. Under the "
-        "laboratory's ceiling this cannot be seen; with none the doll would end its layout after "
+        "laboratory's ceiling this cannot be seen; with no ceiling the doll would end its layout "
+        "after "
         "some tens of somersaults, or a hundred from a quarter of the scatter.",
         tuple(_claims()),
         _draw(),
@@ -140,8 +141,8 @@ def _claims() -> list[Claim]:
 def _draw() -> Figure:
     from somersault.view import style as look
 
-    made = look.figure(9.2, 4.0)
-    left, right = made.subplots(1, 2)
+    picture = look.figure(9.2, 4.0)
+    left, right = picture.subplots(1, 2)
     at = np.arange(len(DAMPINGS))
     rates = 2 * np.pi * growth()
     styles = ((look.VERMILION, "o-"), (look.BLUE, "s-"))
@@ -159,4 +160,4 @@ def _draw() -> Figure:
     right.axhline(SOMERSAULTS, color=look.GREY, lw=0.8, ls="--")
     look.label(right, 0.0, SOMERSAULTS + 1.2, "the laboratory's catch", look.GREY)
     right.legend(loc="upper right", frameon=False)
-    return made
+    return picture

@@ -44,7 +44,7 @@ class Scatter:
 
     def vary(self, sprung: bool) -> dict[str, Vary]:
         """As quantities of an ensemble."""
-        found = {
+        varied = {
             "tilted": (("takeoff.tilt",), self.attitude, "rad"),
             "twisted": (("takeoff.twist",), self.attitude, "rad"),
             "tilting": (("takeoff.tilt_rate",), self.rates, "rad/s"),
@@ -53,10 +53,10 @@ class Scatter:
         }
         if sprung:
             size = self.pretension * -launch().pretension
-            found["tension"] = (("joints.shoulder.pretension",), size, "N m")
+            varied["tension"] = (("joints.shoulder.pretension",), size, "N m")
         return {
             name: Vary(adds_to=what, normal=(0.0, deviation), unit=unit)
-            for name, (what, deviation, unit) in found.items()
+            for name, (what, deviation, unit) in varied.items()
             if deviation > 0
         }
 

@@ -15,7 +15,7 @@ CHAPTER = Chapter(
         _entry("fig6-1", "Figure 6-1: the rudi", "_rudi_flights.fig_6_1"),
         _entry("fig6-2", "Figure 6-2: landings with prescribed joints", "_rudi_maps.fig_6_2"),
         _entry("fig6-3", "Figure 6-3: landings with compliant joints", "_rudi_maps.fig_6_3"),
-        _entry("ch6-poses", "Which pose the gains are of", "_rudi_maps.poses", beyond=True),
+        _entry("ch6-poses", "In which pose the gains are taken", "_rudi_maps.poses", beyond=True),
         _entry("sec6-3-h", "Section 6.3.3: other angular momenta", "_rudi_maps.momentum"),
         _entry("fig6-4", "Figure 6-4: an off-nominal start, prescribed", "_rudi_flights.fig_6_4"),
         _entry("fig6-5", "Figure 6-5: the same start, compliant", "_rudi_flights.fig_6_5"),

@@ -48,9 +48,9 @@ def gentle() -> Result:
     front = rudi.data(_KEPT)["front"]
     most = ", ".join(f"{group} {torque:.0f}" for group, torque in peaks().items())
     return Result(
-        "Beyond the thesis: it prints no torques. Its motion's twist rate is 40.2 rad/s.",
+        "The thesis prints no torques. Its motion's greatest twist rate is 40.2 rad/s.",
         "The nominal rudi asks for more than an athlete has. This one has the same start, "
-        "technique and end, and is the fastest that was found with torques bounded at "
+        "technique and end, and is the fastest that a search found with torques bounded at "
         + ", ".join(f"{g} {b:.0f}" for g, b in rudi.data(_KEPT)["bounds"].items())
         + " N m (scripts/rudi.py, which says where they come from). It lands after "
         f"{rudi.landing_time(_KEPT):.2f} s with a tilt of "
@@ -79,7 +79,7 @@ def gentle() -> Result:
 
 
 def _of_the_motion(rate: float) -> tuple[Claim, ...]:
-    end, bounds, found = rudi.nominal(_KEPT).landing, rudi.data(_KEPT)["bounds"], peaks()
+    end, bounds, torques = rudi.nominal(_KEPT).landing, rudi.data(_KEPT)["bounds"], peaks()
     arms_out = named_pose(rudi.MODEL, "T")
     off = max(
         abs(end.joints[name] - arms_out[name.removeprefix("left_").removeprefix("right_")])
@@ -100,8 +100,8 @@ def _of_the_motion(rate: float) -> tuple[Claim, ...]:
         statement(
             "gentle.torques", "§6.3.1", "its torques are such as an athlete may have",
             "(not in the thesis)",
-            "; ".join(f"{g} {t:.0f} of {bounds[g]:.0f} N m" for g, t in found.items()),
-            all(torque <= bounds[group] for group, torque in found.items()),
+            "; ".join(f"{g} {t:.0f} of {bounds[g]:.0f} N m" for g, t in torques.items()),
+            all(torque <= bounds[group] for group, torque in torques.items()),
             "Holds when none is over its bound."
         ),
         number(
@@ -154,8 +154,8 @@ def _of_the_maps(
 def _draw(front: list[dict], stiff: rudi.Landings) -> Figure:
     from somersault.view import style as look
 
-    made = look.figure(8.4, 3.9)
-    left, right = made.subplots(1, 2)
+    picture = look.figure(8.4, 3.9)
+    left, right = picture.subplots(1, 2)
     rates = [one["twist_rate"] for one in front]
     left.plot([one["times_bounds"] for one in front], rates, "o-", color=look.BLUE, ms=5)
     left.axhline(_RATE, color=look.GREY, ls="--", lw=1.2, label="the thesis's motion")
@@ -175,4 +175,4 @@ def _draw(front: list[dict], stiff: rudi.Landings) -> Figure:
     right.set_xticks(ticks, [str(t) for t in ticks])
     right.minorticks_off()
     right.legend(frameon=False, fontsize=8)
-    return made
+    return picture

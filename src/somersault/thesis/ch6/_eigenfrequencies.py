@@ -50,8 +50,8 @@ def roots(pose: str, of: str = "wrap") -> Array:
     values = np.linalg.eigvals(np.linalg.solve(moving, np.diag(gains))).real
     by = 2 * _ZETA / _FREQUENCY * values
     split = np.sqrt(by**2 - 4 * values + 0j)
-    found = np.concatenate([(-by + split) / 2, (-by - split) / 2])
-    return found[np.argsort(-np.abs(found))]
+    both = np.concatenate([(-by + split) / 2, (-by - split) / 2])
+    return both[np.argsort(-np.abs(both))]
 
 
 def _coordinates(pose: str) -> Array:
@@ -130,8 +130,8 @@ def table_6_1() -> Result:
             "table6-1.stiffer", "Table 6.1", "the fastest root is faster in pike than in wrap",
             "921 against 210 rad/s", f"{stiff['pike']:.0f} against {stiff['wrap']:.0f} rad/s",
             stiff["pike"] > 1.5 * stiff["wrap"],
-            "Holds when it is 1.5 times faster at least. The upper arm's small inertia about its "
-            "own axis, straight, makes it; with gains from the wrap. The thesis's masses are not "
+            "Holds when it is 1.5 times faster at least. The straight arm's small inertia about "
+            "its long axis is the cause; gains are from the wrap. The thesis's masses are not "
             "printed.",
         )
     )  # fmt: skip
@@ -163,7 +163,8 @@ f"{100 * share:.0f} % of the 26 roots in wrap are between half and one and a hal
         + ". The first of them is near the printed one by chance. Over all rows ours differ by a "
         f"factor of {apart('pike'):.2f} in pike and {apart('wrap'):.2f} in wrap (root mean square "
         f"of logarithms); with gains from the pike by {apart('pike', 'pike'):.2f} and "
-        f"{apart('wrap', 'pike'):.2f}, which speaks for the wrap, weakly: it is another body. "
+        f"{apart('wrap', 'pike'):.2f}, which favours the wrap, but only weakly, since it is "
+        "another body. "
         "Roots that fast make the flight mildly stiff.",
         tuple(claims),
         None,

@@ -63,8 +63,8 @@ def extensions(arms: str = ABDUCTED, **style: float) -> Extensions:
     for hold in HOLDS.tolist():
         times = {"begin": _BEGIN, "quarter": _QUARTER, "hold": hold, "extend": _EXTEND} | style
         middle = _BEGIN + _QUARTER + hold + times["extend"] / 2
-        made = hula(spin=_RATE, arms=arms, duration=middle + times["extend"] / 2, **times)
-        flown = made.fly(accuracy=1e-9, samples=200)
+        maneuver = hula(spin=_RATE, arms=arms, duration=middle + times["extend"] / 2, **times)
+        flown = maneuver.fly(accuracy=1e-9, samples=200)
         tilt, twist = principal_attitude(flown)
         turned = np.interp(middle, flown.times, np.unwrap(twist))
         if hold == 0.0:
@@ -75,17 +75,17 @@ def extensions(arms: str = ABDUCTED, **style: float) -> Extensions:
     return Extensions(moment, final, swung, twists)
 
 
-def spread(found: Extensions) -> tuple[float, float, float]:
+def spread(hulas: Extensions) -> tuple[float, float, float]:
     """Least, greatest and mean tilt of those that extend between 1/4 and 3/4 twist, rad."""
-    tilt = np.abs(found.tilt[found.inside])
+    tilt = np.abs(hulas.tilt[hulas.inside])
     return float(tilt.min()), float(tilt.max()), float(tilt.mean())
 
 
 def sec_6_3_hula() -> Result:
     """The hula's tilt, the extension's moment and the arms."""
-    found = extensions()
-    least, most, mean = np.degrees(spread(found))
-    claims = (*_tilt_claims(found), _timing_claim(), _best_claim(found), _arms_claim(found))
+    hulas = extensions()
+    least, most, mean = np.degrees(spread(hulas))
+    claims = (*_tilt_claims(hulas), _timing_claim(), _best_claim(hulas), _arms_claim(hulas))
     rows = []
     for style in _STYLES:
         other = extensions(**style)
@@ -97,8 +97,9 @@ def sec_6_3_hula() -> Result:
         "A quarter cycle of hula in a piked somersault tilts the principal axes, more so with the "
         "arms abducted. The hips should extend between 1/4 and 3/4 twist for the most tilt; "
         "between these, says Yeadon, the moment is not critical.",
-        f"The gymnast at {_RATE:g} rad/s in a pike of 1.4 rad; in 0.2 s his legs swing from before "
-        "him to 30° left of him, and some time later he extends in 0.2 s, arms to his sides (the "
+        f"The gymnast at {_RATE:g} rad/s in a pike of 1.4 rad; in 0.2 s his legs swing from in "
+        "front of him to 30° left of him, and some time later he extends in 0.2 s, arms to his "
+        "sides (the "
         "thesis prints none of this). The moment is the twist of his principal axes in the middle "
         f"of the extension. Between 1/4 and 3/4 the tilt is {least:.1f} to {most:.1f}°, "
         f"{mean:.1f}° on average.",
@@ -109,7 +110,7 @@ def sec_6_3_hula() -> Result:
     )  # fmt: skip
 
 
-def _tilt_claims(found: Extensions) -> tuple[Claim, ...]:
+def _tilt_claims(hulas: Extensions) -> tuple[Claim, ...]:
     before = _before()
     sides = hula(side=-np.pi / 6).fly().landing
     other = hula().fly().landing
@@ -118,9 +119,9 @@ def _tilt_claims(found: Extensions) -> tuple[Claim, ...]:
         statement(
             "sec6-3-hula.tilts", _WHERE, "a quarter cycle of hula in a piked somersault tilts the "
             "principal axes", "tilted", f"from {abs(np.degrees(before)):.2f}° to "
-            f"{np.degrees(found.swung):.2f}° when the legs are at the side; if he extends at once, "
-            f"{np.degrees(found.tilt[0]):.2f}° afterwards",
-            bool(abs(before) < 1e-6 and abs(found.swung) > 0.05 and abs(found.tilt[0]) > 0.05),
+            f"{np.degrees(hulas.swung):.2f}° when the legs are at the side; if he extends at once, "
+            f"{np.degrees(hulas.tilt[0]):.2f}° afterwards",
+            bool(abs(before) < 1e-6 and abs(hulas.swung) > 0.05 and abs(hulas.tilt[0]) > 0.05),
         ),
         statement(
             "sec6-3-hula.side", _WHERE, "the side to which the hips swing decides that of the "
@@ -154,31 +155,31 @@ def _timing_claim() -> Claim:
     )  # fmt: skip
 
 
-def _best_claim(found: Extensions) -> Claim:
-    least, most, mean = np.degrees(spread(found))
-    outside = np.degrees(np.abs(found.tilt[~found.inside]))
-    best = found.moment[np.argmax(np.abs(found.tilt))]
+def _best_claim(hulas: Extensions) -> Claim:
+    least, most, mean = np.degrees(spread(hulas))
+    outside = np.degrees(np.abs(hulas.tilt[~hulas.inside]))
+    best = hulas.moment[np.argmax(np.abs(hulas.tilt))]
     return statement(
         "sec6-3-hula.best", _WHERE, "extending between 1/4 and 3/4 twist makes the net tilt "
         "greatest", "greatest", f"greatest at {best:.2f} twists; {least:.1f} to {most:.1f}° "
         f"between 1/4 and 3/4 ({mean:.1f}° on average), {outside.min():.1f} to "
         f"{outside.max():.1f}° ({outside.mean():.1f}°) before and after, from "
-        f"{found.moment.min():.2f} to {found.moment.max():.2f}",
+        f"{hulas.moment.min():.2f} to {hulas.moment.max():.2f}",
         bool(0.25 <= best <= 0.75 and mean > outside.mean() and least > outside.min()),
         "Holds when the greatest is between, and mean and least there exceed those outside. At "
         "half a twist there is a dip, where the bent body's own tilt is least.",
     )  # fmt: skip
 
 
-def _arms_claim(found: Extensions) -> Claim:
+def _arms_claim(hulas: Extensions) -> Claim:
     other = extensions(ADDUCTED)
-    mine, theirs = np.degrees([abs(found.swung), abs(other.swung)])
-    best = np.degrees([np.abs(x.tilt).max() for x in (found, other)])
+    abducted, adducted = np.degrees([abs(hulas.swung), abs(other.swung)])
+    best = np.degrees([np.abs(x.tilt).max() for x in (hulas, other)])
     return statement(
         "sec6-3-hula.arms", _WHERE, "the effect is increased if the arms are abducted during the "
-        "hula", "increased", f"arms straight out {mine:.2f}° when the legs are at the side and at "
-        f"most {best[0]:.2f}° in the end; at the sides {theirs:.2f}° and {best[1]:.2f}°",
-        bool(mine > theirs and best[0] > best[1]),
+        "hula", "increased", f"arms straight out {abducted:.2f}° when the legs are at the side and "
+        f"at most {best[0]:.2f}° in the end; at the sides {adducted:.2f}° and {best[1]:.2f}°",
+        bool(abducted > adducted and best[0] > best[1]),
         "With the arms at the sides the bent body turns back by itself at "
         f"{other.moment.max():.2f} twists, so that it never extends later than that.",
     )  # fmt: skip
@@ -188,9 +189,9 @@ def _draw_6_3() -> Figure:
     from somersault.view import strip
     from somersault.view import style as look
 
-    made = look.figure(9.4, 6.0)
-    grid = made.add_gridspec(2, 2, height_ratios=(1, 1.35))
-    above, left, right = (made.add_subplot(g) for g in (grid[0, :], grid[1, 0], grid[1, 1]))
+    picture = look.figure(9.4, 6.0)
+    grid = picture.add_gridspec(2, 2, height_ratios=(1, 1.35))
+    above, left, right = (picture.add_subplot(g) for g in (grid[0, :], grid[1, 0], grid[1, 1]))
     shown = hula(spin=_RATE, hold=0.16, duration=1.0).fly()
     times = np.array([0.0, 0.12, 0.25, 0.41, 0.51, 0.61, 0.71, 0.81, 0.91])
     strip(above, shown, times, view=(20.0, 12.0), words=False)
@@ -204,10 +205,10 @@ def _draw_6_3() -> Figure:
         (ABDUCTED, look.BLUE, "arms straight out", (0.62, 14.8)),
         (ADDUCTED, look.VERMILION, "arms at the sides", (0.47, 5.6)),
     ):
-        found = extensions(arms)
-        on = slice(0, int(np.argmax(found.moment)) + 1)  # then it turns back
-        final = np.degrees(np.abs(found.tilt[on]))
-        left.plot(found.moment[on], final, ".-", color=color, ms=4, lw=1)
+        hulas = extensions(arms)
+        on = slice(0, int(np.argmax(hulas.moment)) + 1)  # then it turns back
+        final = np.degrees(np.abs(hulas.tilt[on]))
+        left.plot(hulas.moment[on], final, ".-", color=color, ms=4, lw=1)
         look.label(left, *spot, words, color)
     look.label(left, 0.5, 0.8, "1/4 to 3/4 twist", look.GREY, ha="center")
     left.set(xlabel="twist in the middle of the extension", ylim=(0, 16), xlim=(0, 1.02))
@@ -225,4 +226,4 @@ def _draw_6_3() -> Figure:
         )
     right.set(xlabel="time (s)", ylabel="tilt of the principal axes (°)", ylim=(0, 16))
     look.label(right, 0.55, 2.0, "dots: the hips begin to extend", look.GREY)
-    return made
+    return picture

@@ -43,12 +43,12 @@ def only(groups: tuple[str, ...], frequency: float) -> Takeoff:
 @cache
 def _shares() -> dict[str, tuple[float, float]]:
     """Share of small errors with one group of joints compliant alone, and with all but it."""
-    found = {}
+    shares = {}
     for group in _GROUPS:
         others = tuple(name for name in _GROUPS if name != group)
         alone, without = (rudi.landings(only(g, best()), _POINTS) for g in ((group,), others))
-        found[group] = (alone.share, without.share)
-    return found
+        shares[group] = (alone.share, without.share)
+    return shares
 
 
 @cache
@@ -87,9 +87,9 @@ def _opening() -> Array:
 
 def why() -> Result:
     """Sensitivities against the natural frequency, and which joints carry it."""
-    found, stiff = _sensitivities(), rudi.sensitivity(None)
-    twist = found[:, 2]
-    sizes = np.linalg.norm(found, axis=(1, 2))
+    slopes, stiff = _sensitivities(), rudi.sensitivity(None)
+    twist = slopes[:, 2]
+    sizes = np.linalg.norm(slopes, axis=(1, 2))
     least = _FREQUENCIES[int(np.argmin(sizes))]
     crossing = [_crossing(twist[:, k]) for k in range(2)]
     shares = _shares()
@@ -109,8 +109,9 @@ def why() -> Result:
         statement(
             "why.arms", "§6.3.3", "the compliance that allowed the arms to open prematurely was "
             "important in off-nominal simulations", "important",
-            f"without the shoulders' {100 * shares['shoulders'][1]:.0f} % land below 0.1, with all "
-            f"joints' {100 * whole:.0f} %, with none {100 * none:.0f} %",
+            f"with all but the shoulders compliant {100 * shares['shoulders'][1]:.0f} % land below "
+            "0.1, with all "
+            f"joints {100 * whole:.0f} %, with none {100 * none:.0f} %",
             missed == "shoulders" and shares["shoulders"][1] < whole / 2,
             "Holds when the shoulders are missed most and more than half is lost without them.",
         ),
@@ -127,18 +128,19 @@ def why() -> Result:
         ),
     )  # fmt: skip
     return Result(
-        "Beyond the thesis: why the compliant body lands more reliably. The thesis supposes that "
+        "Why the compliant body lands more reliably. The thesis supposes that "
         "the arms' giving way matters.",
         "Prescribed, 0.1 rad of tilt at takeoff changes the twist at landing by "
         f"{abs(stiff[2, 0]) / 10:.1f} rad: more tilt twists faster all the way. A faster twist "
         "pulls soft arms outward, the inertia about the twist axis grows and the twist slows down, "
-        "as a governor's balls would have it. Too stiff, it does nothing; too soft, it "
-        "overcorrects and the sign turns round. Between lies a natural frequency at which the "
+        "as with the balls of a governor. Arms that are too stiff do nothing; arms that are too "
+        "soft overcorrect, and the effect changes sign. In between lies a natural frequency at "
+        "which the "
         f"first-order effect is least, {least:g} rad/s, and the map's best is {best():g}. The "
         "motor tape does the nominal work, so that springs answer nothing but deviations. The "
         "table shows each group of joints compliant alone, and all the others without it.",
         claims,
-        _draw(found),
+        _draw(slopes),
         Table(
             ("joints", "compliant alone: below 0.1", "all others compliant"),
             (
@@ -163,16 +165,16 @@ def _words(crossing: float | None) -> str:
     return "no ω_n" if crossing is None else f"{crossing:.0f} rad/s"
 
 
-def _draw(found: Array) -> Figure:
+def _draw(slopes: Array) -> Figure:
     from somersault.view import style as look
 
-    made = look.figure(8.4, 3.9)
-    grid = made.subplots(1, 2, sharey=True)
+    picture = look.figure(8.4, 3.9)
+    grid = picture.subplots(1, 2, sharey=True)
     for ax, k, name in zip(grid, (0, 1), ("tilt", "twist"), strict=True):
         for row, (what, color) in enumerate(
             (("somersault", look.GREY), ("tilt", look.GREEN), ("twist", look.BLUE))
         ):
-            ax.plot(_FREQUENCIES, found[:, row, k], "o-", ms=3, color=color, label=f"final {what}")
+            ax.plot(_FREQUENCIES, slopes[:, row, k], "o-", ms=3, color=color, label=f"final {what}")
         ax.axhline(0, color=look.BLACK, lw=0.8)
         ax.axvline(best(), color=look.VERMILION, lw=1.0, ls="--")
         ax.set(xscale="log", xlabel="ω_n (rad/s)", title=f"by {name} at takeoff (rad/rad)")
@@ -180,4 +182,4 @@ def _draw(found: Array) -> Figure:
         ax.minorticks_off()
         if not k:
             ax.legend(frameon=False, fontsize=8)
-    return made
+    return picture

@@ -121,12 +121,15 @@ def landings(
 @cache
 def error_map(
     frequency: float | None, pose: Pose = "wrap", points: int = 21, factor: float = 1.0,
-    own: bool = False, kept: Kept = "rudi",
+    against_unperturbed: bool = False, kept: Kept = "rudi",
 ) -> Landings:  # fmt: skip
-    """The map of a strategy, at `factor` times the momentum; the error against the nominal
-    landing, or with `own` against the unperturbed one at that momentum."""
+    """The map of a strategy at `factor` times the momentum.
+
+    Its errors are measured against the nominal landing, or `against_unperturbed`: against the
+    landing of the unperturbed flight at that momentum.
+    """
     takeoff = scaled(strategy(frequency, pose, kept=kept), factor)
-    if not own:
+    if not against_unperturbed:
         return landings(takeoff, points, kept=kept)
     alone = fly(MODEL, takeoff, landing_time(kept), samples=2, accuracy=1e-8)
     return landings(takeoff, points, alone, kept)

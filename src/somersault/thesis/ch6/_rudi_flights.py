@@ -75,15 +75,15 @@ def fig_6_1() -> Result:
     return Result(
         "A front somersault with one and a half twists from an upright pike, arms out, 12.6 rad/s, "
         "by the hula movement, to a layout with arms out; programmed by hand.",
-        "The thesis does not print its motion, so one was found by differential evolution over a "
-        "few timings and amplitudes (scripts/rudi.py) and is kept as data: pike, a quarter of a "
+        "The thesis does not print its motion, so ours comes from differential evolution over a "
+        "few timings and amplitudes (scripts/rudi.py) and is stored as data: pike, a quarter of a "
         f"hula, arms wrapped, arms out, part of a hula backwards. It lands after "
         f"{rudi.landing_time():.2f} s with a tilt of {end.tilt:.3f} rad and twists fastest, "
         f"{rate:.1f} rad/s, at {when:.2f} s. Peak joint torques: "
         + ", ".join(f"{g} {t:.0f}" for g, t in peaks.items())
         + " N m. An athlete's hips give perhaps half of what ours ask for: swinging both legs to "
-        "the side in a fifth of a second is quicker than life. The thesis prints no torques; what "
-        "bounded ones allow is ch6-gentle.",
+        "the side in a fifth of a second is faster than any athlete. The thesis prints no torques; "
+        "ch6-gentle shows what bounded ones allow.",
         claims,
         _draw_6_1(),
         Table(
@@ -174,8 +174,8 @@ def _tracking(flight: Flight) -> Array:
 def _draw_worked(flight: Flight) -> Figure:
     from somersault.view import style as look
 
-    made = look.figure(7.2, 7.4)
-    axes = made.subplots(4, sharex=True)
+    picture = look.figure(7.2, 7.4)
+    axes = picture.subplots(4, sharex=True)
     history, nominal = flight.dataset, rudi.nominal().dataset
     units = {"somersault": "turns", "tilt": "rad", "twist": "turns"}
     for ax, (name, unit) in zip(axes, units.items(), strict=False):
@@ -194,4 +194,4 @@ def _draw_worked(flight: Flight) -> Figure:
     )  # fmt: skip
     axes[3].set(xlabel="time (s)", ylabel=f"{len(_SHOWN)} joint angles (rad)")
     axes[0].set_title("solid: from tilt and twist of −0.1 rad; dashed: the nominal flight")
-    return made
+    return picture

@@ -39,10 +39,10 @@ def best() -> float:
 
 def fig_6_2() -> Result:
     """Prescribed motion."""
-    found = rudi.error_map(None)
+    lands = rudi.error_map(None)
     sizes = np.linalg.svd(rudi.sensitivity(None), compute_uv=False)
-    middle = found.error[len(found.starts) // 2, len(found.starts) // 2]
-    away = float(np.median(found.error))
+    middle = lands.error[len(lands.starts) // 2, len(lands.starts) // 2]
+    away = float(np.median(lands.error))
     where = "§6.3.2, Figure 6-2"
     claims = (
         statement(
@@ -53,24 +53,24 @@ def fig_6_2() -> Result:
             "fig6-2.valley", where, "away from the nominal the error increases except for a narrow "
             "valley of starts along which it remains small", "a narrow valley",
             f"sensitivity to one direction of (tilt, twist) is {sizes[0] / sizes[1]:.0f} times "
-            f"that to the other ({sizes[0]:.0f} and {sizes[1]:.1f}); {100 * found.share:.0f} % of "
+            f"that to the other ({sizes[0]:.0f} and {sizes[1]:.1f}); {100 * lands.share:.0f} % of "
             "the grid is below 0.1",
-            bool(sizes[0] / sizes[1] > _NARROW) and found.share < _FEW_LAND,
+            bool(sizes[0] / sizes[1] > _NARROW) and lands.share < _FEW_LAND,
             f"Holds when the one is over {_NARROW:g} times the other and less than "
             f"{100 * _FEW_LAND:.0f} % land below {rudi.SMALL:g}.",
         ),
         statement(
             "fig6-2.unreliable", where, "a prescribed motion would not produce reliable landings",
-            "unreliable", f"median error {away:.2f}, {100 * found.share:.0f} % below 0.1",
+            "unreliable", f"median error {away:.2f}, {100 * lands.share:.0f} % below 0.1",
             away > _LARGE,
             f"Holds when the median is above {_LARGE:g}, the error called large in fig6-4.",
         ),
     )  # fmt: skip
     return Result(
         "The landing error of the prescribed rudi from tilts and twists within 0.1 rad.",
-        f"{found.error.size} flights with the nominal's momentum in space. {claims[1].computed}.",
+        f"{lands.error.size} flights with the nominal's momentum in space; {claims[1].computed}.",
         claims,
-        _draw_map(found, "prescribed joints"),
+        _draw_map(lands, "prescribed joints"),
     )
 
 
@@ -119,8 +119,8 @@ def fig_6_3() -> Result:
         f"Ours is best at {at:g} rad/s, {at / rate:.2f} of the greatest twist rate: "
         f"{100 * soft.share:.0f} % of {soft.error.size} starts below 0.1, against "
         f"{100 * stiff.share:.0f} % prescribed. Gains use the outboard inertias in mid-twist "
-        "(wrap): the thesis does not say in which pose its inertias were taken, and that decides "
-        "(next entry).",
+        "(wrap): the thesis does not say in which pose its inertias were taken, and that choice "
+        "decides the result (next entry).",
         claims,
         _draw_map(soft, f"compliant, ω_n = {at:g} rad/s"),
         Table(
@@ -138,8 +138,8 @@ def fig_6_3() -> Result:
     )
 
 
-def _median(found: rudi.Landings) -> float:
-    return float(np.nanmedian(found.error))
+def _median(lands: rudi.Landings) -> float:
+    return float(np.nanmedian(lands.error))
 
 
 def poses() -> Result:
@@ -153,15 +153,15 @@ def poses() -> Result:
     )
     untaped = rudi.landings(rudi.strategy(best(), tape=False), _FEWER).share
     return Result(
-        "Beyond the thesis: it does not say in which pose the outboard inertias of its gains were "
+        "The thesis does not say in which pose the outboard inertias of its gains were "
         "taken, nor how it counted flights that failed.",
         f"Prescribed, {100 * stiff:.0f} % of the starts land below 0.1. With gains from mid-twist "
         f"up to {100 * top['wrap']:.0f} %; from the initial pike up to {100 * top['pike']:.0f} %; "
         f"following the pose {100 * top['following']:.0f} %. The inertia about the upper arm's "
         "long axis is some ten times smaller with the elbow straight, as at takeoff, than bent: "
-        "gains taken there leave the bent arm without hold, and flights end in the shoulder's "
-        f"gimbal lock. In brackets: flights of {_FEWER**2} that took more than the steps "
-        "allowed; they count as not small and are never averaged. Without the motor tape "
+        "gains taken there leave the bent arm too soft, and flights end in the shoulder's "
+        f"gimbal lock. In brackets: how many of {_FEWER**2} flights took more steps than allowed; "
+        "they count as not landed and are never averaged over. Without the motor tape "
         f"{100 * untaped:.0f} % land below 0.1.",
         (),
         _draw_scan(shares, stiff),
@@ -174,7 +174,7 @@ def momentum() -> Result:
     claims = []
     rows = []
     for factor in (0.9, 1.1):
-        stiff = rudi.error_map(None, points=_COARSE, factor=factor, own=True)
+        stiff = rudi.error_map(None, points=_COARSE, factor=factor, against_unperturbed=True)
         scan = {f: rudi.error_map(f, "wrap", _COARSE, factor, True) for f in _AROUND}
         top = max(scan, key=lambda f: scan[f].share)
         fixed = rudi.error_map(top, "wrap", _COARSE, factor)
@@ -209,29 +209,29 @@ def momentum() -> Result:
     )
 
 
-def _draw_map(found: rudi.Landings, title: str) -> Figure:
+def _draw_map(lands: rudi.Landings, title: str) -> Figure:
     from somersault.view import style as look
 
-    made = look.figure(5.6, 4.6)
-    ax = made.subplots()
+    picture = look.figure(5.6, 4.6)
+    ax = picture.subplots()
     shown = ax.pcolormesh(
-        found.starts, found.starts, found.error.T, cmap=look.darkening(), vmin=0, vmax=1,
+        lands.starts, lands.starts, lands.error.T, cmap=look.darkening(), vmin=0, vmax=1,
         shading="nearest",
     )  # fmt: skip
     ax.contour(
-        found.starts, found.starts, np.nan_to_num(found.error.T, nan=9.0), levels=[rudi.SMALL],
+        lands.starts, lands.starts, np.nan_to_num(lands.error.T, nan=9.0), levels=[rudi.SMALL],
         colors=[look.VERMILION], linewidths=1.6,
     )  # fmt: skip
     ax.set(xlabel="tilt at takeoff (rad)", ylabel="twist at takeoff (rad)", title=title)
-    made.colorbar(shown, ax=ax, extend="max").set_label("landing error e (orange line: 0.1)")
-    return made
+    picture.colorbar(shown, ax=ax, extend="max").set_label("landing error e (orange line: 0.1)")
+    return picture
 
 
 def _draw_scan(shares: dict, stiff: float) -> Figure:
     from somersault.view import style as look
 
-    made = look.figure(6.6, 4.2)
-    ax = made.subplots()
+    picture = look.figure(6.6, 4.2)
+    ax = picture.subplots()
     for pose, color in zip(_POSES, (look.BLUE, look.VERMILION, look.GREEN), strict=True):
         values = [100 * shares[pose][f].share for f in _FEW]
         ax.plot(_FEW, values, "o-", color=color, ms=4, label=_GAINS[pose])
@@ -243,4 +243,4 @@ def _draw_scan(shares: dict, stiff: float) -> Figure:
     ax.set_xticks(ticks, [str(t) for t in ticks])
     ax.minorticks_off()
     ax.legend(frameon=False)
-    return made
+    return picture

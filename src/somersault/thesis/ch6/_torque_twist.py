@@ -49,13 +49,13 @@ def stopped_torque_twist() -> tuple[Maneuver, float, float]:
         return Maneuver.moves(still.model, moves, still.takeoff, still.duration)
 
     def wrong(x: Array) -> Array:
-        made = leaning(x)
-        tilt, twist = principal_attitude(until(made, float(x[0]) + 0.2))
+        maneuver = leaning(x)
+        tilt, twist = principal_attitude(until(maneuver, float(x[0]) + 0.2))
         return np.array([np.sin(twist[-1]), tilt[-1]])
 
     # Half a twist after takeoff the left arm has to go up; see the claims of figure 1-1.
-    found = fsolve(wrong, [twist_time(still, 0.5) - 0.1, 0.6], xtol=1e-12)
-    return leaning(found), float(found[0]), float(found[1])
+    solution = fsolve(wrong, [twist_time(still, 0.5) - 0.1, 0.6], xtol=1e-12)
+    return leaning(solution), float(solution[0]), float(solution[1])
 
 
 @cache
@@ -63,10 +63,10 @@ def rotation_numbers() -> tuple[tuple[float, float, float, float], ...]:
     """Tilt (°), and twists a somersault: flown, by elliptic integrals, by quadrature."""
     rows = []
     for degrees in _TILTS:
-        made = tilted(float(np.radians(degrees)))
-        exact = rigid_continuation(made.fly(accuracy=SHARP, samples=[0.0]))
+        maneuver = tilted(float(np.radians(degrees)))
+        exact = rigid_continuation(maneuver.fly(accuracy=SHARP, samples=[0.0]))
         rows.append((
-            degrees, rotation_number(made)[0], exact.twists_per_somersault,
+            degrees, rotation_number(maneuver)[0], exact.twists_per_somersault,
             exact.twists_per_somersault_quadrature(),
         ))  # fmt: skip
     return tuple(rows)
@@ -90,13 +90,13 @@ def sec_6_2() -> Result:
     still = torque_twist(pose="T", duration=2.2).fly(accuracy=SHARP)
     rows = {pose: _twist_rate(_with_arms(pose).fly()) for pose in ("layout", "arms_up", "wrap")}
     slowest = min(float(r[0]) for r in rows.values())
-    made, moment, lean = stopped_torque_twist()
-    ended = made.fly(accuracy=SHARP)
+    stopped, moment, lean = stopped_torque_twist()
+    ended = stopped.fly(accuracy=SHARP)
     after = np.degrees(np.ptp(np.unwrap(principal_attitude(ended)[1])[ended.times >= moment + 0.2]))
     free = principal_attitude(arm_tilt().fly())[0]
     tilts = np.degrees([principal_attitude(still)[0][0], free[np.argmax(np.abs(free))]])
-    found = np.array(rotation_numbers())
-    wrong = np.abs(found[:, 1:3] / found[:, 3:] - 1).max()
+    numbers = np.array(rotation_numbers())
+    wrong = np.abs(numbers[:, 1:3] / numbers[:, 3:] - 1).max()
     listed = ", ".join(f"{pose} {r[0]:.1f} to {r[1]:.1f}" for pose, r in rows.items())
     claims = (
         statement(
@@ -115,8 +115,8 @@ def sec_6_2() -> Result:
         statement(
             "sec6-2.ended", _SIX_2, "arms leant at the right moment end a torque twist too",
             "the tilt removed", f"one up and one down by {np.degrees(lean):.1f}° from "
-            f"{moment:.3f} s on: then it twists by {after:.2f}° in all until {made.duration:g} s",
-            bool(after < 5),
+            f"{moment:.3f} s on: then it twists by {after:.2f}° in all until "
+            f"{stopped.duration:g} s", bool(after < 5),
         ),
         statement(
             "sec6-2.tilt", _SIX_2, "the net effect of either technique is to tilt the principal "
@@ -126,14 +126,14 @@ def sec_6_2() -> Result:
         ),
         statement(
             "sec6-2.small", _SIX_2, "even a small tilt of a layout results in twisting", "twists",
-            f"{found[0, 1]:+.3f} a somersault with a tilt of {found[0, 0]:g}°",
-            bool(abs(found[0, 1]) > 0.05),
+            f"{numbers[0, 1]:+.3f} a somersault with a tilt of {numbers[0, 0]:g}°",
+            bool(abs(numbers[0, 1]) > 0.05),
         ),
         statement(
             "sec6-2.rate", _SIX_2, "the greater the tilt, the greater the twist rate", "greater",
-            f"from {abs(found[0, 1]):.3f} to {abs(found[-1, 1]):.3f} twists a somersault for "
+            f"from {abs(numbers[0, 1]):.3f} to {abs(numbers[-1, 1]):.3f} twists a somersault for "
             f"tilts of {_TILTS[0]:g} to {_TILTS[-1]:g}°",
-            bool(np.all(np.diff(np.abs(found[:, 1])) > 0)),
+            bool(np.all(np.diff(np.abs(numbers[:, 1])) > 0)),
         ),
         statement(
             "sec6-2.exact", "§6.2, Figure 2-7", "it is the map of rotation that gives the rate",
@@ -148,8 +148,8 @@ def sec_6_2() -> Result:
     return Result(
         "A torque twist comes from the ground, a torque-free one from moves of the limbs; both "
         "tilt the principal axes against the momentum, and the more tilt, the more twist.",
-        "Both techniques flown by the gymnast. The table has twists a somersault of the gymnast "
-        "held in layout.",
+        "Both techniques flown by the gymnast. The table gives twists per somersault of the "
+        "gymnast held in layout.",
         claims,
         _draw_6_2(),
         table,
@@ -159,8 +159,8 @@ def sec_6_2() -> Result:
 def _draw_6_2() -> Figure:
     from somersault.view import style as look
 
-    made = look.figure(9.2, 3.8)
-    left, right = made.subplots(1, 2)
+    picture = look.figure(9.2, 3.8)
+    left, right = picture.subplots(1, 2)
     torque = torque_twist(pose="T", duration=2.2).fly()
     ended = stopped_torque_twist()[0].fly()
     free = arm_tilt(duration=1.6).fly()
@@ -176,4 +176,4 @@ def _draw_6_2() -> Figure:
         look.label(right, *spot, words, color)
     left.set(xlabel="time (s)", ylabel="twists of the principal axes")
     right.set(xlabel="time (s)", ylabel="tilt of the principal axes (°)")
-    return made
+    return picture
