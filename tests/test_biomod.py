@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 
 import somersault as so
 from somersault._core.errors import SomersaultError
-from somersault.model._types import Model
+from somersault.model import Model
 from somersault.model.read._biomod import read_biomod
 
 DATA = Path(__file__).parent / "data"

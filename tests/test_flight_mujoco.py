@@ -22,8 +22,7 @@ from trees import InMujoco, State, mujoco_addresses, random_tree, to_mujoco, uni
 
 from somersault.attitude import matrix_from_quaternion, quaternion_conjugate, quaternion_product
 from somersault.flight import Flight, JointTakeoff, Takeoff, fly
-from somersault.model import Body, Joint, Model, load, shipped
-from somersault.model._weld import as_matrix, as_vector
+from somersault.model import Body, Joint, Model, as_matrix, as_vector, load, shipped
 
 SECONDS = 2.0
 STEP = 1e-3  # s; halved until what Runge–Kutta misses by is a tenth of WITHIN

@@ -19,8 +19,7 @@ from reference_a3 import (
     springs,
 )
 
-from somersault.model import Body, Model
-from somersault.model._weld import as_matrix
+from somersault.model import Body, Model, as_matrix
 from somersault.stability import spin, stable_ranges
 
 ORIGIN = (0.0, 0.0, 0.0)

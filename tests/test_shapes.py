@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import shutil
 from dataclasses import replace
 from importlib.resources import files
@@ -152,6 +153,16 @@ def test_a_loft_goes_through_its_sections() -> None:
 def test_what_is_no_shape_is_refused(make: Any, said: str) -> None:
     with pytest.raises(so.SomersaultError, match=said):
         make()
+
+
+@pytest.mark.parametrize("kind", [*KINDS, "mesh"])
+def test_a_shape_is_sent_without_what_follows_from_it(kind: str) -> None:
+    shape = tetrahedron() if kind == "mesh" else KINDS[kind][0]
+    before = len(pickle.dumps(shape))
+    seen = shape.triangles
+    again = pickle.loads(pickle.dumps(shape))
+    assert len(pickle.dumps(shape)) == before
+    np.testing.assert_array_equal(again.triangles.vertices, seen.vertices)
 
 
 # ------------------------------------------------------------------------- read from MJCF

@@ -12,8 +12,7 @@ from scipy.optimize import linear_sum_assignment
 from trees import random_rotation, random_tree
 
 from somersault import SomersaultError
-from somersault.model import Body, Joint, Model, load
-from somersault.model._weld import as_matrix, as_vector
+from somersault.model import Body, Joint, Model, as_matrix, as_vector, load
 from somersault.stability import Spin, chart, root_locus, spin, stable_ranges
 
 RANKS = ("minor", "intermediate", "major")

@@ -25,9 +25,16 @@ from somersault.engine import STATUS, Integrator
 from somersault.flight._takeoff import Takeoff
 from somersault.flight.behaviours import JointTakeoff
 from somersault.history import summary
-from somersault.model import Joint, Model, body_frames, body_velocities, centre_of_mass
-from somersault.model._mounted import Mount
-from somersault.model._pose import pose, spread
+from somersault.model import (
+    Joint,
+    Model,
+    Mount,
+    body_frames,
+    body_velocities,
+    centre_of_mass,
+    pose,
+    spread,
+)
 
 if TYPE_CHECKING:
     import xarray as xr

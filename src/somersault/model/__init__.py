@@ -1,5 +1,6 @@
 """Bodies in the air: what they are made of, and where they are read from."""
 
+from somersault.model._bodies import GROUND, LIMIT_SLACK, Body, Follow, Joint
 from somersault.model._formats import register_format
 from somersault.model._kinematics import (
     body_frames,
@@ -17,20 +18,13 @@ from somersault.model._mirror import (
     reflection,
     sides,
 )
+from somersault.model._model import Model
 from somersault.model._mounted import Mount, mounted
 from somersault.model._plain import model_digest, plain_form
 from somersault.model._pose import pose, spread
+from somersault.model._refused import FREE_IT
 from somersault.model._skeleton import model_shapes
 from somersault.model._to_mjcf import mjcf, write_mjcf
-from somersault.model._types import (
-    FREE_IT,
-    GROUND,
-    LIMIT_SLACK,
-    Body,
-    Follow,
-    Joint,
-    Model,
-)
 from somersault.model._vectors import IDENTITY, ZERO, Matrix, Vector, as_matrix, as_vector
 from somersault.model._weld import merge_welded
 from somersault.model.athlete._measured import athlete_from_measurements

@@ -17,7 +17,9 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.attitude import AXES
-from somersault.model._types import GROUND, IDENTITY, ZERO, Body, Joint, Matrix, Model
+from somersault.model._bodies import GROUND, Body, Joint
+from somersault.model._model import Model
+from somersault.model._vectors import IDENTITY, ZERO, Matrix
 from somersault.model._weld import merge_welded
 
 Base = Literal["free", "fixed"]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from somersault._core.errors import SomersaultError
 from somersault.model._base import Base, rebased
-from somersault.model._types import Model
+from somersault.model._model import Model
 
 Reader = Callable[[Path, "Base | None"], Model]
 

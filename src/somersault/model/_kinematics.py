@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
 from somersault.attitude import matrix_from_quaternion
-from somersault.model._types import GROUND, Joint, Model
+from somersault.model._bodies import GROUND, Joint
+from somersault.model._model import Model
 
 
 def body_frames(model: Model, q: ArrayLike) -> tuple[Array, Array]:

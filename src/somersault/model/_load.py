@@ -17,8 +17,8 @@ from somersault.attitude import as_axes
 from somersault.model._base import Base, rebased
 from somersault.model._formats import endings, reader
 from somersault.model._mass import check_mass_matrix
+from somersault.model._model import Model
 from somersault.model._strange import listed
-from somersault.model._types import Model
 
 _SHIPPED = files("somersault.model") / "shipped"
 

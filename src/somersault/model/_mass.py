@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.model._kinematics import body_frames, body_velocities
-from somersault.model._types import Model
+from somersault.model._model import Model
 
 _POSES = 3  # besides the drawn one
 _ROUNDING = 1e-12  # of a matrix whose diagonal is 1

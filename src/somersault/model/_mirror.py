@@ -15,8 +15,9 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault.attitude import from_sequence
+from somersault.model._bodies import GROUND, Joint
 from somersault.model._kinematics import body_frames
-from somersault.model._types import GROUND, Joint, Model
+from somersault.model._model import Model
 
 _CLOSE = 1e-6  # of the body's own size
 
@@ -25,9 +26,17 @@ _CLOSE = 1e-6  # of the body's own size
 class Pair:
     """Two mirrored joint speeds, as places in a vector of joint speeds.
 
-    In the symmetric motion right = sign · left; in the antisymmetric one right = −sign · left.
-    A joint in the plane of symmetry is its own image: left == right, and `sign` is +1 if a
-    mirrored motion leaves it as it is (it moves symmetrically), −1 if it reverses it.
+    A joint in the plane of symmetry is its own image, with left == right.
+
+    Parameters
+    ----------
+    name : str
+        What the two are called together.
+    left, right : int
+    sign : int
+        In the symmetric motion right = sign · left; in the antisymmetric one right = −sign · left.
+        Of a joint that is its own image: +1 if a mirrored motion leaves it as it is (it moves
+        symmetrically), −1 if it reverses it.
     """
 
     name: str
@@ -38,10 +47,25 @@ class Pair:
 
 @lru_cache(maxsize=64)
 def mirror_pairs(model: Model) -> tuple[Pair, ...]:
-    """The pairs of a model in the pose in which its file draws it; () if it has no symmetry.
+    """The pairs of a model in the pose in which its file draws it.
 
     The plane is the one across a base axis that mirrors the most joints, across the axis of
     somersault (left and right) where that does not decide.
+
+    Parameters
+    ----------
+    model : Model
+
+    Returns
+    -------
+    tuple of Pair
+        Empty if it has no symmetry.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> [pair.name for pair in so.model.mirror_pairs(so.load("furrer"))]
+    ['shoulder']
     """
     drawn = _drawn(model)
     best: tuple[Pair, ...] = ()
@@ -53,21 +77,51 @@ def mirror_pairs(model: Model) -> tuple[Pair, ...]:
 
 
 def named_pairs(model: Model) -> dict[str, Pair]:
-    """The left–right pairs by the name that they share."""
+    """The left–right pairs by the name that they share.
+
+    Parameters
+    ----------
+    model : Model
+
+    Returns
+    -------
+    dict of str to Pair
+    """
     return {pair.name: pair for pair in mirror_pairs(model) if pair.left != pair.right}
 
 
 def reflection(model: Model, pair: Pair) -> tuple[float, float]:
-    """Factor and offset that make the left side's angle the right side's, about the poses in which
-    the file draws them, which are each other's image; the factor turns rates over."""
+    """What makes the left side's angle the right side's, about the poses in which the file draws
+    them, which are each other's image.
+
+    Parameters
+    ----------
+    model : Model
+    pair : Pair
+
+    Returns
+    -------
+    factor, offset : float
+        right = offset + factor · left; the factor turns rates over.
+    """
     references = {joint.name: joint.reference for joint in model.joints if joint.kind != "ball"}
     left, right = (references.get(model.speeds[k], 0.0) for k in (pair.left, pair.right))
     return float(pair.sign), right - pair.sign * left
 
 
 def sides(model: Model, name: str) -> dict[str, tuple[float, float]]:
-    """The joint of this name, or both of a pair that is called by it, each with the factor and the
-    offset that make it of the first."""
+    """The joint of a name, or both of the pair that is called by it.
+
+    Parameters
+    ----------
+    model : Model
+    name : str
+
+    Returns
+    -------
+    dict of str to (float, float)
+        For each joint the factor and the offset that make its angle of the first one's.
+    """
     pair = named_pairs(model).get(name)
     if pair is None or name in model.speeds:
         return {name: (1.0, 0.0)}
@@ -76,8 +130,17 @@ def sides(model: Model, name: str) -> dict[str, tuple[float, float]]:
 
 
 def mirror_images(model: Model) -> dict[str, tuple[str, float, float]]:
-    """Each hinge's and slide's mirror image: its name, and the factor and the offset that make its
-    angle of this joint's."""
+    """Each hinge's and slide's mirror image.
+
+    Parameters
+    ----------
+    model : Model
+
+    Returns
+    -------
+    dict of str to (str, float, float)
+        Its name, and the factor and the offset that make its angle of this joint's.
+    """
     joints = {joint.name for joint in model.joints if joint.kind != "ball"}
     images = {}
     for pair in mirror_pairs(model):

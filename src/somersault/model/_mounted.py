@@ -10,7 +10,8 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.checks import instance, shown
 from somersault._core.errors import SomersaultError
-from somersault.model._types import GROUND, Body, Model
+from somersault.model._bodies import GROUND, Body
+from somersault.model._model import Model
 from somersault.model._vectors import IDENTITY, ZERO, Matrix, Vector, as_matrix, as_vector
 from somersault.model._weld import merge_welded
 
@@ -19,9 +20,16 @@ from somersault.model._weld import merge_welded
 class Mount:
     """A free model (`rider`) whose base is fixed to a carrier.
 
-    `held` is the two as one model with a fixed base: the carrier's joints, then the rider's, all
-    with their own names. The rider's base frame stands at `position` (m), turned by `rotation`
-    (columns: its axes), in the axes of the carrier, which is body 0 of `held`.
+    Parameters
+    ----------
+    rider : Model
+        What is held.
+    held : Model
+        The two as one model with a fixed base: the carrier's joints, then the rider's, all with
+        their own names.
+    position, rotation : tuple of float, tuple of rows
+        Where the rider's base frame stands (m), and how it is turned (columns: its axes), in the
+        axes of the carrier, which is body 0 of `held`.
     """
 
     rider: Model
@@ -40,8 +48,32 @@ def mounted(
 ) -> Mount:
     """Fix a free model's base to a carrier that stands on the ground with joints of its own.
 
-    The carrier's mass may be zero. Raises SomersaultError for a model whose base is not free,
-    and for a carrier with a parent or without joints.
+    Parameters
+    ----------
+    model : Model
+        Free in the air.
+    carrier : Body
+        With `GROUND` for its parent; its mass may be zero.
+    position, rotation : tuple of float, tuple of rows
+        Of the model's base frame in the carrier's axes.
+
+    Returns
+    -------
+    Mount
+
+    Raises
+    ------
+    SomersaultError
+        For a model whose base is not free, and a carrier with a parent or without joints.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> none = (0.0, 0.0, 0.0)
+    >>> bar = so.Joint("bar", "hinge", axis=(0.0, 1.0, 0.0))
+    >>> clamp = so.Body("clamp", -1, 0.0, none, (none, none, none), joints=(bar,))
+    >>> so.mounted(so.load("doll"), clamp, position=(0.0, 0.0, -0.3)).held
+    <Model 'doll, held': 3 bodies, 3 joints, 0.521 kg, on a fixed base>
     """
     instance("model", model, Model)
     instance("carrier", carrier, Body)

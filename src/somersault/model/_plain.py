@@ -7,7 +7,7 @@ import json
 from dataclasses import fields, is_dataclass
 from typing import Any
 
-from somersault.model._types import Model
+from somersault.model._model import Model
 
 _NAMES = ("name", "ignored")  # of a model: what it is called, and what its file held besides
 
@@ -33,7 +33,17 @@ def plain_form(model: Model) -> dict[str, Any]:
 
 
 def model_digest(model: Model) -> str:
-    """The SHA-256 of `plain_form`: the same for models that give the same results."""
+    """The SHA-256 of `plain_form`: the same for models that give the same results.
+
+    Parameters
+    ----------
+    model : Model
+
+    Returns
+    -------
+    str
+        Hexadecimal.
+    """
     return hashlib.sha256(json.dumps(plain_form(model), sort_keys=True).encode()).hexdigest()
 
 

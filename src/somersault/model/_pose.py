@@ -10,18 +10,35 @@ from numpy.typing import ArrayLike
 from somersault._core.array import Array
 from somersault._core.checks import by_name
 from somersault._core.errors import SomersaultError
+from somersault.model._bodies import LIMIT_SLACK, Follow, Joint
 from somersault.model._mirror import sides
-from somersault.model._types import LIMIT_SLACK, Follow, Joint, Model
+from somersault.model._model import Model
 
 
 def pose(model: Model, angles: Mapping[str, ArrayLike] | None) -> Array:
-    """Joint coordinates (…, coordinates) of a pose given by name; the rest stand at `model.home`.
+    """Joint coordinates of a pose given by name; the rest stay as drawn.
 
-    Angles may be arrays and broadcast. A pair's common name sets both sides, mirrored. A
-    ball's `name.1`, `name.2`, `name.3` are the components of a rotation vector along its
-    body's axes. A joint that follows another stands where that one has it. Raises
-    SomersaultError for an unknown name, a value that is not finite, one outside the joint's
-    limits, or one at which a joint does not follow its leader.
+    Parameters
+    ----------
+    model : Model
+    angles : mapping of str to array_like, optional
+        rad (m), which broadcast together. A pair's common name sets both sides, mirrored. A ball's
+        `name.1`, `name.2`, `name.3` are the components of a rotation vector along its body's axes.
+
+    Returns
+    -------
+    ndarray, (…, coordinates)
+
+    Raises
+    ------
+    SomersaultError
+        For an unknown name, a value that is not finite, or one outside the joint's limits.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> so.model.pose(so.load("furrer"), {"shoulder": 1.4}).tolist()
+    [1.4, -1.4]
     """
     given = {
         name: _numbers(name, value)
@@ -97,8 +114,23 @@ def spread(
 ) -> dict[str, ArrayLike]:
     """The same values with each pair's common name replaced by its two speeds' names.
 
-    With `mirrored` the right side gets the sign under which the pair is symmetric (a pose);
-    without, both get the same number (a stiffness).
+    Parameters
+    ----------
+    model : Model
+    values : mapping of str to array_like
+        By the names of joint speeds, or of pairs.
+    mirrored : bool
+        Whether the right side gets the sign and offset under which the pair is symmetric (a pose),
+        or both the same number (a stiffness).
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    SomersaultError
+        For a joint that is given twice.
     """
     result: dict[str, ArrayLike] = {}
     for name, value in by_name("what joints get", values).items():

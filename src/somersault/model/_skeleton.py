@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.model._types import Body, Model
+from somersault.model._bodies import Body
+from somersault.model._model import Model
 from somersault.model._vectors import as_matrix, as_vector
 from somersault.model.shapes import Capsule, Shape, Sphere
 

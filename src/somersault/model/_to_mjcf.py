@@ -14,7 +14,8 @@ from somersault._core.checks import instance
 from somersault._core.errors import SomersaultError
 from somersault._core.files import write
 from somersault.attitude import quaternion_from_matrix
-from somersault.model._types import GROUND, Body, Joint, Model
+from somersault.model._bodies import GROUND, Body, Joint
+from somersault.model._model import Model
 from somersault.model._vectors import IDENTITY, ZERO
 from somersault.model.shapes import Mesh, Shape
 

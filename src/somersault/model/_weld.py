@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.model._types import GROUND, Body
+from somersault.model._bodies import GROUND, Body
 from somersault.model._vectors import as_matrix, as_vector
 from somersault.model.shapes import Shape
 
@@ -63,11 +63,20 @@ class _Lump:
 def merge_welded(bodies: list[Body], free: bool) -> tuple[Body, ...]:
     """The same mechanism with every body without joints merged into its parent.
 
-    `bodies` are in order, parents first. With a `free` base body 0 stays although it has no
-    joints. Bodies without joints whose parent is `GROUND` never move and are dropped; what
-    hangs on them hangs on `GROUND` instead. Frames are composed, masses and inertias joined
-    about the common centre of mass, shapes carried along; the bodies that remain keep their names,
-    axes and order.
+    Bodies without joints whose parent is `GROUND` never move and are dropped; what hangs on them
+    hangs on `GROUND` instead. Frames are composed, masses and inertias joined about the common
+    centre of mass, shapes carried along; the bodies that remain keep their names, axes and order.
+
+    Parameters
+    ----------
+    bodies : list of Body
+        In order, parents first.
+    free : bool
+        Whether body 0 is a free base, and stays although it has no joints.
+
+    Returns
+    -------
+    tuple of Body
     """
     kept: list[Body] = []
     lumps: list[_Lump] = []

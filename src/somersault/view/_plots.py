@@ -15,7 +15,16 @@ if TYPE_CHECKING:
 
 
 def stability_chart(chart: xr.Dataset) -> Figure:
-    """The stable region of a `stability.chart`; where the energy is definite, if it was asked."""
+    """The stable region of a `stability.chart`; where the energy is definite, if it was asked.
+
+    Parameters
+    ----------
+    chart : xarray.Dataset
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
     y_name, x_name = (str(name) for name in chart.stable.dims)
     x, y = chart[x_name].values, chart[y_name].values
     with style():
@@ -49,18 +58,27 @@ def _region(
     label(axes, x[column], y[row], somewhere if rows.size else nowhere, color, ha="center")
 
 
-def root_loci(found: xr.Dataset) -> Figure:
-    """The roots of a `stability.root_locus`, darker as the quantity rises."""
-    (name,) = (str(n) for n in found.coords)
-    values = found[name].values
-    roots = found.growth.values + 1j * found.frequency.values
+def root_loci(loci: xr.Dataset) -> Figure:
+    """The roots of a `stability.root_locus`, darker as the quantity rises.
+
+    Parameters
+    ----------
+    loci : xarray.Dataset
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    (name,) = (str(n) for n in loci.coords)
+    values = loci[name].values
+    roots = loci.growth.values + 1j * loci.frequency.values
     with style():
         picture = figure(6.2, 5.4)
         axes = picture.subplots()
         dots = locus(axes, values, roots)
         stroboscopic(axes)
-        picture.colorbar(dots, label=_axis(found, name), shrink=0.7)
-        axes.set_title(f"Roots of {found.attrs['model']} about axis {found.attrs['axis']}")
+        picture.colorbar(dots, label=_axis(loci, name), shrink=0.7)
+        axes.set_title(f"Roots of {loci.attrs['model']} about axis {loci.attrs['axis']}")
         picture.draw_without_rendering()
     return picture
 

@@ -33,7 +33,18 @@ def filled(
     edge: str | None = BLUE,
     alpha: float = 0.55,
 ) -> None:
-    """A region of points that are true, filled and outlined. `stable` is (y, x)."""
+    """A region of points that are true, filled and outlined.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+    x, y : array_like
+    stable : array_like of bool, (y, x)
+    color, edge : str, optional
+        Of the region and its outline; no outline for None.
+    alpha : float
+        Opacity.
+    """
     values = np.asarray(stable, float)
     ax.contourf(x, y, values, levels=[0.5, 1.5], colors=[color], alpha=alpha, zorder=1)
     if edge is not None:
@@ -49,7 +60,18 @@ def band(
     edge: str | None = BLUE,
     alpha: float = 0.55,
 ) -> None:
-    """The region between two edges; where there is none they are NaN."""
+    """The region between two edges.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+    x, low, high : ndarray
+        Where there is none, the edges are NaN.
+    color, edge : str, optional
+        Of the region and its edges; no edges for None.
+    alpha : float
+        Opacity.
+    """
     ax.fill_between(x, low, high, color=color, alpha=alpha, lw=0, zorder=1)
     if edge is not None:
         for line in (low, high):
@@ -64,7 +86,24 @@ def locus(
     size: float = 6.0,
     arrows: tuple[float, ...] = (),
 ) -> Any:
-    """Roots (value, root) as dots that darken as the value rises; returns the mappable."""
+    """Roots as dots that darken as a value rises.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+    values : ndarray, (values,)
+    roots : ndarray, (values, roots)
+        Complex, in units of Ω.
+    size : float
+        Of the dots.
+    arrows : tuple of float
+        Values at which arrow heads show which way the roots move.
+
+    Returns
+    -------
+    matplotlib mappable
+        For a colour bar.
+    """
     shade = np.broadcast_to(values[:, None], roots.shape)
     ax.axvline(0, color=GREY, lw=0.8, zorder=0)
     ax.axhline(0, color=GREY, lw=0.8, zorder=0)

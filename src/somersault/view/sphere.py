@@ -23,10 +23,21 @@ WAYS = ("1 front", "2 left", "3 head")
 
 
 def energies(inertias: ArrayLike, count: int) -> Array:
-    """Energies, J at h = 1 kg m²/s, of up to `count` curves each side of the separatrix.
+    """Energies of curves on the momentum sphere, through points evenly spaced in angle between the
+    middle axis and the two others.
 
-    Those through points evenly spaced in angle between the middle axis and the two others; a
-    symmetric body has curves on one side only.
+    Parameters
+    ----------
+    inertias : array_like, (3,)
+        Principal, kg m².
+    count : int
+        How many curves on each side of the separatrix, at most: a symmetric body has them on one
+        side only.
+
+    Returns
+    -------
+    ndarray
+        J, at h = 1 kg m²/s.
     """
     i = np.sort(np.asarray(inertias, float))
     angle = (np.arange(count) + 0.5) / count * np.pi / 2
@@ -51,9 +62,21 @@ def sphere_map(
     title: str = "",
     view: tuple[float, float] = VIEW,
 ) -> Figure:
-    """The map in 3-D and, beside it, as a picture of tilt against twist.
+    """The momentum sphere in 3-D and, next to it, as a picture of tilt against twist.
 
-    `levels` are energies at h = 1 kg m²/s, as from `energies`.
+    Parameters
+    ----------
+    inertias : array_like, (3,)
+        Principal, kg m².
+    levels : sequence of float
+        Energies at h = 1 kg m²/s, as from `energies`.
+    title : str, optional
+    view : (float, float)
+        Azimuth and elevation of the eye, degrees.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
     """
     made = look.figure(9.6, 4.6)
     ball, chart = made.subplots(1, 2, width_ratios=(1, 1.35))

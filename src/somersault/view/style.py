@@ -53,7 +53,17 @@ def figure(width: float = 7.2, height: float = 4.6) -> Figure:
 
 
 def saved(made: Figure, ending: str) -> bytes:
-    """A picture as "png" or "svg", the same bytes whenever it is made."""
+    """A picture as the bytes of a file, the same whenever it is made.
+
+    Parameters
+    ----------
+    made : matplotlib.figure.Figure
+    ending : {"png", "svg"}
+
+    Returns
+    -------
+    bytes
+    """
     held = io.BytesIO()
     plain = {"Date": None, "Creator": None} if ending == "svg" else {"Software": None}
     made.savefig(held, format=ending, dpi=_DOTS, metadata=plain)

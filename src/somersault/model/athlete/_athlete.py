@@ -14,7 +14,8 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.checks import one_of, text, truth
-from somersault.model._types import GROUND, Body, Joint, Model
+from somersault.model._bodies import GROUND, Body, Joint
+from somersault.model._model import Model
 from somersault.model._vectors import IDENTITY, ZERO, Matrix, Vector
 from somersault.model.shapes import Shape
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError, SomersaultWarning
-from somersault.model._types import Model
+from somersault.model._model import Model
 from somersault.model.athlete._athlete import Part, Physique, Shoulders, athlete_model, joined
 from somersault.model.athlete._figure import BALL, solid, stadium
 from somersault.model.athlete._measurements import read_measurements
@@ -37,15 +37,31 @@ def athlete_from_measurements(
 ) -> Model:
     """A gymnast of the shape that 95 measurements give, with thirteen joints.
 
-    `source` is a file as the `yeadon` package reads it, or a mapping from the measurements'
-    names to metres; left and right are averaged. `mass` (kg), or the file's `totalmass`,
-    scales all densities; else the mass follows from `densities`, in kg/m³ by segment. The
-    torso twists at the level of the nipples, as in Yeadon's model. `shoulders` and `knees` are
-    as in `athlete`.
+    The torso twists at the level of the nipples, as in Yeadon's model (1990, J. Biomech. 23, 67).
+    Left and right are averaged. What the `yeadon` package had to mend (a cross-section that no
+    stadium has) is a SomersaultWarning.
 
-    Raises SomersaultError if yeadon is not installed, for a file or measurement that cannot be
-    used, measurements that enclose no body, and a mass outside 10 to 250 kg. What yeadon had
-    to mend (a cross-section that no stadium has) is a SomersaultWarning.
+    Parameters
+    ----------
+    source : path, or mapping of str to float
+        A file as yeadon reads it, or metres by the measurements' names.
+    mass : float, optional
+        kg, to which all densities are scaled; by default the file's `totalmass`, else what follows
+        from `densities`.
+    densities : {"Dempster", "Chandler", "Clauser"}
+        kg/m³ by segment.
+    shoulders, knees, name
+        As in `athlete`.
+
+    Returns
+    -------
+    Model
+
+    Raises
+    ------
+    SomersaultError
+        If yeadon is not installed, for a file or measurement that cannot be used, measurements that
+        enclose no body, and a mass outside 10 to 250 kg.
     """
     try:
         human_type = import_module("yeadon").Human

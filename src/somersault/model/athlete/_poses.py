@@ -13,7 +13,7 @@ from somersault._core.errors import SomersaultError
 from somersault.attitude import quaternion_product
 from somersault.model._load import load
 from somersault.model._mirror import mirror_pairs
-from somersault.model._types import Model
+from somersault.model._model import Model
 
 # Radians, both sides alike; what is not named is 0. In pike and tuck the wrists are beside, or in
 # front of, the middle of the shanks (of the mean man; of others to a few centimetres). A tuck of
@@ -56,13 +56,31 @@ _REST = ("torso_twist", "elbow", "hip_flexion", "hip_abduction")
 
 
 def named_pose(model: str | os.PathLike[str] | Model, name: str) -> dict[str, float]:
-    """Every joint's angle (rad) in a position of gymnastics, by the names both sides share.
+    """Every joint's angle in a position of gymnastics, by the names that both sides share.
 
-    `model` is an athlete (`athlete`, `athlete_from_measurements`, "gymnast", or any with
-    joints so named); `name` one of tuck, pike, layout, arms_up, T, wrap. With knees a tuck
-    bends them. The result is a pose wherever one is asked for; change an angle by its name.
+    Parameters
+    ----------
+    model : str, path or Model
+        An athlete (`athlete`, `athlete_from_measurements`, "gymnast", or any with joints so named).
+    name : {"tuck", "pike", "layout", "arms_up", "T", "wrap"}
+        With knees, a tuck bends them.
 
-    Raises SomersaultError for another name, or a model without those joints.
+    Returns
+    -------
+    dict of str to float
+        rad: a pose wherever one is asked for. Change an angle by its name.
+
+    Raises
+    ------
+    SomersaultError
+        For another name, or a model without those joints.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> piked = so.named_pose("gymnast", "pike") | {"hip_flexion": 2.0}
+    >>> piked["elbow"]
+    0.42
     """
     if not isinstance(name, str) or name not in _POSES:
         raise SomersaultError(f"no pose is called {name!r}; the poses are {', '.join(_POSES)}")
@@ -82,7 +100,17 @@ def named_pose(model: str | os.PathLike[str] | Model, name: str) -> dict[str, fl
 
 
 def pose_names(model: Model) -> tuple[str, ...]:
-    """The named poses that a model takes: none, unless it has an athlete's joints."""
+    """The named poses that a model takes.
+
+    Parameters
+    ----------
+    model : Model
+
+    Returns
+    -------
+    tuple of str
+        None, unless it has an athlete's joints.
+    """
     return () if _missing({pair.name for pair in mirror_pairs(model)}) else tuple(_POSES)
 
 

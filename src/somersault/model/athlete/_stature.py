@@ -10,7 +10,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.checks import one_of
 from somersault._core.errors import SomersaultError
-from somersault.model._types import Model
+from somersault.model._model import Model
 from somersault.model.athlete._athlete import HEAD, Part, Physique, Shoulders, athlete_model, joined
 from somersault.model.athlete._de_leva import (
     HEEL_BEHIND_ANKLE,
@@ -32,15 +32,40 @@ def athlete(
     knees: bool = False,
     name: str = "athlete",
 ) -> Model:
-    """A gymnast of a height (m) and mass (kg), with thirteen joints.
+    """A gymnast of a height and mass, with thirteen joints.
 
-    Masses, centres of mass, radii of gyration and lengths are those of the table of de Leva
-    (1996), every length in proportion to the height and every mass to the mass. `shoulders`
-    are three hinges each or a ball; `knees` adds a hinge to each leg, which is else straight.
-    Joint names, signs and what is assumed: docs/athletes.md.
+    Masses, centres of mass, radii of gyration and lengths are those of the table of de Leva (1996),
+    every length in proportion to the height and every mass to the mass. Joint names, signs and what
+    is assumed: docs/athletes.md.
 
-    Raises SomersaultError for a height outside 0.5 to 2.5 m, a mass outside 10 to 250 kg, or
-    another sex or kind of shoulder than those named.
+    Parameters
+    ----------
+    height : float
+        0.5 to 2.5 m.
+    mass : float
+        10 to 250 kg.
+    sex : {"male", "female"}
+    shoulders : {"hinges", "ball"}
+        Three hinges each, or a ball.
+    knees : bool
+        Whether each leg has a hinge there; else it is straight.
+    name : str
+        The model's.
+
+    Returns
+    -------
+    Model
+
+    Raises
+    ------
+    SomersaultError
+        For a height or mass outside those ranges, or another sex or kind of shoulder.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> so.athlete(1.62, 55.0, "female", knees=True, name="Ana")
+    <Model 'Ana': 10 bodies, 15 joints, 55 kg, free>
     """
     one_of("sex", sex, TABLES)
     tall = _within("height", height, "m", 0.5, 2.5)

@@ -16,7 +16,8 @@ import numpy as np
 
 from somersault._core.errors import SomersaultError
 from somersault.model._base import rooted
-from somersault.model._types import GROUND, Body, Joint, Model
+from somersault.model._bodies import GROUND, Body, Joint
+from somersault.model._model import Model
 from somersault.model._weld import merge_welded
 from somersault.model.read._biomod_text import AXES, File, Segment
 from somersault.model.read._biomod_words import Words, read_text, shown

@@ -16,7 +16,7 @@ from itertools import pairwise
 import numpy as np
 
 from somersault._core.errors import SomersaultError
-from somersault.model._types import IDENTITY, ZERO, Matrix, Vector
+from somersault.model._vectors import IDENTITY, ZERO, Matrix, Vector
 from somersault.model._weld import Array, as_matrix, as_vector
 from somersault.model.read._biomod_words import Words, shown
 

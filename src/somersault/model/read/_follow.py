@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 
 from somersault._core.errors import SomersaultError
-from somersault.model._types import Follow
+from somersault.model._bodies import Follow
 
 
 def leaders(file: str, follows: Mapping[str, Follow], joints: Collection[str]) -> dict[str, Follow]:

@@ -14,8 +14,10 @@ import numpy as np
 from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault.attitude import matrix_from_quaternion
 from somersault.model._base import Base, rooted
+from somersault.model._bodies import GROUND, Body, Follow, Joint
+from somersault.model._model import Model
 from somersault.model._strange import listed
-from somersault.model._types import GROUND, Body, Follow, Joint, Matrix, Model, Vector
+from somersault.model._vectors import Matrix, Vector
 from somersault.model.read._follow import leaders
 from somersault.model.read._mujoco_shapes import body_shapes
 from somersault.model.read._xml import MOST_BYTES

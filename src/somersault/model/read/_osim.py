@@ -15,8 +15,9 @@ import numpy as np
 
 from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault.model._base import Base, rooted
+from somersault.model._bodies import GROUND, Body
+from somersault.model._model import FileCoordinates, Model
 from somersault.model._strange import Strange
-from somersault.model._types import GROUND, Body, FileCoordinates, Model
 from somersault.model._vectors import as_matrix, as_vector
 from somersault.model.read._osim_functions import Line
 from somersault.model.read._osim_gears import Gears

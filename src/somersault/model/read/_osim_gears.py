@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from somersault.model._types import Follow, Joint
+from somersault.model._bodies import Follow, Joint
 from somersault.model._vectors import Vector
 from somersault.model.read._follow import leaders
 from somersault.model.read._osim_functions import Curve, Line, function

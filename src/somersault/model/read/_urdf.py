@@ -18,7 +18,8 @@ from somersault._core.array import Array
 from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault.attitude import matrix_from_quaternion
 from somersault.model._base import Base, rooted
-from somersault.model._types import GROUND, Body, Joint, Model
+from somersault.model._bodies import GROUND, Body, Joint
+from somersault.model._model import Model
 from somersault.model._vectors import as_matrix, as_vector
 from somersault.model.read._follow import leaders
 from somersault.model.read._urdf_elements import Elements, UrdfJoint

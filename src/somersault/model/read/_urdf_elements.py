@@ -17,8 +17,8 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
+from somersault.model._bodies import Follow
 from somersault.model._strange import Strange
-from somersault.model._types import Follow
 from somersault.model.read._xml import Element
 
 Kind = Literal["fixed", "revolute", "continuous", "prismatic", "floating", "planar"]

@@ -14,7 +14,15 @@ from somersault.model.shapes._shape import Shape, Triangles, positive
 
 @dataclass(frozen=True, kw_only=True)
 class Box(Shape):
-    """A box that reaches `half_sizes` m to each side along its own axes."""
+    """A box.
+
+    Parameters
+    ----------
+    half_sizes : tuple of float
+        How far it reaches to each side along its own axes, m.
+    **pose
+        As of any `Shape`.
+    """
 
     half_sizes: Vector
     kind: ClassVar[str] = "box"

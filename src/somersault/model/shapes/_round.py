@@ -24,7 +24,15 @@ def _arc() -> Array:
 
 @dataclass(frozen=True, kw_only=True)
 class Sphere(Shape):
-    """A sphere of a radius in m."""
+    """A sphere.
+
+    Parameters
+    ----------
+    radius : float
+        m.
+    **pose
+        As of any `Shape`.
+    """
 
     radius: float
     kind: ClassVar[str] = "sphere"
@@ -47,7 +55,15 @@ class Sphere(Shape):
 
 @dataclass(frozen=True, kw_only=True)
 class Ellipsoid(Shape):
-    """An ellipsoid with semi-axes in m along its own axes."""
+    """An ellipsoid.
+
+    Parameters
+    ----------
+    semi_axes : tuple of float
+        m, along its own axes.
+    **pose
+        As of any `Shape`.
+    """
 
     semi_axes: Vector
     kind: ClassVar[str] = "ellipsoid"
@@ -73,7 +89,17 @@ class Ellipsoid(Shape):
 
 @dataclass(frozen=True, kw_only=True)
 class Capsule(Shape):
-    """A cylinder along its axis 3, `half_length` m to each side, with half spheres on its ends."""
+    """A cylinder along its axis 3 with half spheres on its ends.
+
+    Parameters
+    ----------
+    radius : float
+        m.
+    half_length : float
+        Of the cylinder, to each side, m.
+    **pose
+        As of any `Shape`.
+    """
 
     radius: float
     half_length: float
@@ -102,7 +128,17 @@ class Capsule(Shape):
 
 @dataclass(frozen=True, kw_only=True)
 class Cylinder(Shape):
-    """A cylinder along its axis 3, `half_length` m to each side."""
+    """A cylinder along its axis 3.
+
+    Parameters
+    ----------
+    radius : float
+        m.
+    half_length : float
+        To each side, m.
+    **pose
+        As of any `Shape`.
+    """
 
     radius: float
     half_length: float

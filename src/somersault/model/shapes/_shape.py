@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import ClassVar, NamedTuple, Self, TypeAlias
+from typing import Any, ClassVar, NamedTuple, Self, TypeAlias
 
 import numpy as np
 
@@ -62,6 +62,10 @@ class Shape(ABC):
             raise SomersaultError(
                 f"a {self.kind} has the color {self.color}; give red, green, blue, opacity, 0 to 1"
             )
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without the surfaces that follow from it: models are sent to other processes."""
+        return {own.name: getattr(self, own.name) for own in fields(self)}
 
     @property
     @abstractmethod
