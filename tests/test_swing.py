@@ -13,7 +13,7 @@ from trees import mujoco_addresses, quiet, to_mujoco
 from somersault import SomersaultError
 from somersault.dynamics import Equations
 from somersault.flight import JointTakeoff, fly
-from somersault.flight._swing import GRAVITY, Stop, Swing, height_energy, released, swing
+from somersault.flight._swing import GRAVITY, Prop, Swing, height_energy, released, swing
 from somersault.model import GROUND, Body, Joint, Model, Mount, load, mounted
 
 G = -GRAVITY[2]
@@ -77,7 +77,7 @@ def test_a_torsion_pendulum_oscillates_about_its_rest() -> None:
 def test_a_stop_bounces_a_body_back_with_all_its_speed() -> None:
     """Half a period of stop and mass in contact, and the same speed away from it."""
     mount = mounted(one_body(), weightless(), (0.0, 0.0, 0.0))
-    stop = Stop(0.0, 1, stiffness=30.0)
+    stop = Prop(0.0, 1, stiffness=30.0)
     found = swing(
         mount.held, {"bar": 1.0}, 3.0, rates={"bar": -2.0}, gravity=(0, 0, 0),
         stops={"bar": stop}, samples=3001, accuracy=1e-12,
@@ -91,7 +91,7 @@ def test_a_stop_bounces_a_body_back_with_all_its_speed() -> None:
 
 def test_a_damped_stop_takes_speed_and_never_pulls() -> None:
     mount = mounted(one_body(), weightless(), (0.0, 0.0, 0.0))
-    stops = {"bar": Stop(0.0, -1, stiffness=30.0, damping=2.0)}
+    stops = {"bar": Prop(0.0, -1, stiffness=30.0, damping=2.0)}
     found = swing(
         mount.held, {"bar": -1.0}, 1.0, rates={"bar": 2.0}, gravity=(0, 0, 0), stops=stops,
         samples=3001,
@@ -217,7 +217,7 @@ def test_mistakes_are_said_in_a_sentence(mount: Mount, swung: Swing) -> None:
     with pytest.raises(SomersaultError, match="something that holds it"):
         swing(doll, {}, 1.0)
     with pytest.raises(SomersaultError, match="no joint 'elbow'"):
-        swing(mount.held, {}, 1.0, stops={"elbow": Stop(0.0)})
+        swing(mount.held, {}, 1.0, stops={"elbow": Prop(0.0)})
     with pytest.raises(SomersaultError, match="no joint 'elbow'"):
         swing(mount.held, {}, 1.0, until=("elbow", 0.0))
     with pytest.raises(SomersaultError, match="duration above 0"):

@@ -67,13 +67,13 @@ from .flight import (
     Maneuver as Maneuver,
 )
 from .flight import (
+    Prop as Prop,
+)
+from .flight import (
     Release as Release,
 )
 from .flight import (
     Report as Report,
-)
-from .flight import (
-    Stop as Stop,
 )
 from .flight import (
     Swing as Swing,

@@ -27,8 +27,8 @@ from somersault.flight._report import ENDINGS, Report, landing_error, landing_ta
 from somersault.flight._spec import KEYS
 from somersault.flight._swing import (
     GRAVITY,
+    Prop,
     Release,
-    Stop,
     Swing,
     height_energy,
     released,
@@ -51,9 +51,9 @@ __all__ = [
     "JointTakeoff",
     "Landing",
     "Maneuver",
+    "Prop",
     "Release",
     "Report",
-    "Stop",
     "Swing",
     "Takeoff",
     "arm_tilt",

@@ -48,16 +48,47 @@ def compliant(
     stop_stiffness: float = 0.0,
     stop_damping: float = 0.0,
 ) -> Takeoff:
-    """The takeoff of a body that is compliant about the motion that `takeoff` prescribes.
+    """The takeoff of a body that gives way about the motion that a takeoff prescribes.
 
-    Every prescribed joint gets k = ω_n² I and c = 2 ζ ω_n I (ω_n in rad/s), I its outboard
-    inertia in a `pose`: angles by name, an athlete's named pose ("wrap"), the motion's own at a
-    time in s, or "following" it as it changes. With `tape` the joint torques of the nominal flight
-    act besides: of exactly this takeoff, prescribed. With a `stop_stiffness` (N m/rad) joints that
-    have limits get stops there.
-    The angular momentum is given in inertial axes, so that a change of
-    attitude does not merely turn the whole flight. Raises SomersaultError where nothing is
-    prescribed.
+    Every prescribed joint gets a spring and a damper about its path: k = ω_n² I and c = 2 ζ ω_n I,
+    with I the inertia of all that is outboard of it (Playter 1994, section 6.3.3).
+
+    Parameters
+    ----------
+    model : str or Model
+    takeoff : Takeoff
+        Its prescribed joints become compliant; the others must be locked or coupled.
+    natural_frequency : float
+        ω_n, rad/s.
+    damping_ratio : float
+        ζ.
+    pose : mapping, float or str
+        The pose in which I is taken: angles by joint (rad), the motion's own at a time (s), an
+        athlete's named pose ("wrap"), or "following" it as it changes.
+    tape : bool
+        Whether the joint torques of the nominal flight, which follows the paths exactly, are
+        replayed as a motor tape.
+    stop_stiffness, stop_damping : float
+        Of the stops (N m/rad, N m s/rad) that joints with limits get there.
+
+    Returns
+    -------
+    Takeoff
+        Its angular momentum is given in inertial axes, so that another attitude does not merely
+        turn the whole flight.
+
+    Raises
+    ------
+    SomersaultError
+        Where nothing is prescribed, and for anything that does not fit.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> twist = so.arm_tilt()
+    >>> soft = so.compliant("gymnast", twist.takeoff, 30.0, pose="wrap")
+    >>> soft.joints["left_shoulder_abduction"].motion
+    'compliant'
     """
     model = load(model)
     begun = _begun(model, takeoff)
@@ -100,8 +131,24 @@ def compliant(
 def with_momentum(model: str | Model, takeoff: Takeoff) -> Takeoff:
     """The same takeoff, its rotation given as angular momentum in inertial axes.
 
-    Then attitude can be varied with the momentum staying where it is; with rates the whole
+    Then the attitude can be varied while the momentum stays where it is; with rates the whole
     flight would turn along.
+
+    Parameters
+    ----------
+    model : str or Model
+    takeoff : Takeoff
+
+    Returns
+    -------
+    Takeoff
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> takeoff = so.with_momentum("book", so.Takeoff(spin=3.0))
+    >>> takeoff.spin is None and len(takeoff.angular_momentum) == 3
+    True
     """
     return _with_momentum(takeoff, _begun(load(model), takeoff).momentum)
 
@@ -114,11 +161,33 @@ def off_nominal(
     tilt: float = 0.0,
     twist: float = 0.0,
 ) -> Takeoff:
-    """The same takeoff from an attitude that is so far off, rad: an off-nominal start.
+    """The same takeoff from an attitude that is off by some angles: an off-nominal start.
 
-    The angular momentum stays where it is in space, and a motor tape is that of the nominal
-    flight (Playter 1994, section 6.3.2). Raises SomersaultError for a takeoff whose attitude is a
-    quaternion.
+    The angular momentum stays where it is in space, and a motor tape is that of the nominal flight
+    (Playter 1994, section 6.3.2).
+
+    Parameters
+    ----------
+    model : str or Model
+    takeoff : Takeoff
+        Its attitude given by angles.
+    somersault, tilt, twist : float
+        How far it is off, rad.
+
+    Returns
+    -------
+    Takeoff
+
+    Raises
+    ------
+    SomersaultError
+        For a takeoff whose attitude is a quaternion.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> so.off_nominal("book", so.Takeoff(spin=3.0, tilt=0.1), tilt=0.05).tilt
+    0.15000000000000002
     """
     begun = with_momentum(model, takeoff)
     if begun.quaternion is not None:

@@ -34,14 +34,41 @@ def deviated_flight(
     lock: Iterable[str] = (),
     **options: Any,
 ) -> Flight:
-    """The flight of a body that spins at `rate` (rad/s), but for a small deviation.
+    """The flight of a steadily spinning body that starts with a small deviation.
 
-    `tilt`, `somersault` and `twist` are small turns (rad) about the principal axes nearest
-    body axes 1, 2 and 3 (in the model's `axes`), and `joints` what joints are moved by (rad, m):
-    the coordinates of `Spin.linear`, whose `stiffness`, `damping` (both without dimension) and
-    `lock` mean the same here. The angular momentum is that of the spin, along the inertial axis of
-    somersault, and springs are pretensioned to hold it; joints with neither spring nor damper are
-    free. `options` are those of `fly`.
+    The angular momentum is that of the spin, along the inertial axis of somersault. Springs are
+    pretensioned to hold it; joints with neither a spring nor a damper are free.
+
+    Parameters
+    ----------
+    spin : Spin
+    rate : float
+        Of the spin, rad/s.
+    duration : float
+        s.
+    tilt, somersault, twist : float
+        Small turns (rad) about the principal axes nearest body axes 1, 2 and 3 (in the model's
+        `axes`): the coordinates of `Spin.linear`.
+    joints : mapping of str to float, optional
+        By how much joints are moved, rad or m.
+    stiffness, damping : mapping of str to float, optional
+        Without dimension, as in `Spin.linear`: k/(Ω² I) and b/(Ω I).
+    lock : iterable of str
+        Joints that are locked, or "all".
+    **options
+        Those of `somersault.fly`.
+
+    Returns
+    -------
+    Flight
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> layout = so.spin("furrer", pose={"shoulder": 1.4})
+    >>> flight = so.deviated_flight(layout, 8.64, 5.8, tilt=0.01, stiffness={"shoulder": 1.2})
+    >>> abs(flight.landing.twist) < 0.1
+    True
     """
     model = instance("spin", spin, Spin).model
     rate = number("rate", rate)

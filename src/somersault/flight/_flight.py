@@ -25,11 +25,22 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Landing:
-    """The end of a flight: when, how the body stood, how it moved, and why it ended.
+    """The end of a flight: when it was, how the body stood and moved, and why it ended.
 
-    Angles in rad, unwrapped; quaternion scalar first, body to inertial; angular velocity in
-    body axes, rad/s; joint coordinates by name. `ended` is "duration", "event", "too many
-    steps" or "not finite".
+    Attributes
+    ----------
+    time : float
+        s.
+    somersault, tilt, twist : float
+        rad, with all whole turns since takeoff.
+    quaternion : ndarray, (4,)
+        Scalar first, body to inertial.
+    angular_velocity : ndarray, (3,)
+        In body axes, rad/s.
+    joints : dict of str to float
+        Joint coordinates by name, rad or m.
+    ended : str
+        "duration", "event", "too many steps" or "not finite".
     """
 
     time: float
@@ -44,9 +55,31 @@ class Landing:
 
 @dataclass(frozen=True, eq=False)
 class Flight:
-    """One flight, made by `fly`: a `somersault.history.History`; `dataset` is all of it.
+    """One flight, as `fly` returns it. It is a `somersault.history.History`.
 
-    Its `model` is the one that was given to fly, with its shapes; `system.model` is equal to it.
+    Attributes
+    ----------
+    model : Model
+        The one that was given, with its shapes.
+    dataset : xarray.Dataset
+        The whole history over `time`, labelled, with units.
+    landing : Landing
+        How it ended.
+    start : Start
+        The takeoff in numbers: attitude, angular velocity, joints, angular momentum.
+    ended : str
+        "duration", "event", "too many steps" or "not finite".
+    steps : int
+        Steps of the integration.
+    momentum_drift, energy_drift : float
+        Largest relative change of the angular momentum, and of the energy where it is kept.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> flight = so.fly("book", so.Takeoff(spin=3.0, tilt=0.1), duration=2.0)
+    >>> flight.momentum_drift < 1e-12 and flight.energy_drift < 1e-12
+    True
     """
 
     model: Model

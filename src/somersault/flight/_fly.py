@@ -53,8 +53,8 @@ def fly(
     >>> arms = {"shoulder": so.JointTakeoff.sprung(angle=1.4, K=1.2, hold=True)}
     >>> takeoff = so.Takeoff(tilt=0.01, spin=8.64, joints=arms)
     >>> flight = so.fly("furrer", takeoff, duration=5.8)
-    >>> round(flight.landing.twist, 1)
-    0.0
+    >>> abs(flight.landing.twist) < 0.1
+    True
     """
     given = {
         "duration": duration, "gravity": gravity, "accuracy": accuracy, "samples": samples,

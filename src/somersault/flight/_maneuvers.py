@@ -43,12 +43,38 @@ def inertia_change(
     move: float = 0.25,
     duration: float = 0.6,
 ) -> Maneuver:
-    """A spin that is speeded up, or slowed down, by going from one named pose to another.
+    """A spin that goes faster, or slower, because the body goes from one named pose to another.
 
-    `axis` is 2 for a somersault (the default), 3 for a twist upright, as a skater's, or as the
-    model's `axes` say; `spin` (rad/s) is its rate in the first pose; the move begins at `begin` and
-    takes `move` s. The angular momentum lies along inertial axis `axis`. Raises SomersaultError for
-    another axis, and for poses that are none.
+    Parameters
+    ----------
+    model : str or Model
+    axis : int, optional
+        2 for a somersault (the default), 3 for a twist upright, as a skater's; or as the model's
+        `axes` say. The angular momentum lies along the inertial axis of that number.
+    poses : (str, str)
+        From which pose to which.
+    spin : float
+        Rate in the first pose, rad/s.
+    begin, move : float
+        When the move begins, and how long it takes, s.
+    duration : float
+        s.
+
+    Returns
+    -------
+    Maneuver
+
+    Raises
+    ------
+    SomersaultError
+        For another axis, and for poses that do not exist.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> tuck = so.inertia_change(poses=("layout", "tuck"))
+    >>> bool(tuck.fly().angular_velocity[-1, 1] > 2 * 6.0)
+    True
     """
     a, _, c = load(model).axes
     axis = a if axis is None else axis
@@ -74,16 +100,42 @@ def cat_turn(
     arms: float = math.pi / 2,
     move: float = 0.15,
 ) -> Maneuver:
-    """Turning about the long axis without any angular momentum, as a falling cat does.
+    """A turn about the long axis without any angular momentum, as a falling cat makes it.
 
-    With the legs apart, so that they are hard to turn, and the arms in, the torso is twisted to
-    the left by `torso` (rad); then with the arms out to an abduction of `arms` and the legs
-    together the torso is twisted back to the right, and it is the legs that turn. That is
-    repeated for so many `cycles`; at the end every joint is where it was. `legs` is what the hips
-    do while they are hard to turn (rad, by joint; by default 45° apart; {"hip_flexion": 1.57} pikes
-    instead). Each move takes `move` s. A negative `torso` turns the other way. How far it turns
-    depends on the path alone, not on the time it takes (Frohlich 1979). Raises SomersaultError for
-    less than one cycle.
+    With the legs apart, so that they are hard to turn, and the arms in, the torso is twisted to the
+    left. Then, with the arms out and the legs together, it is twisted back to the right, and it is
+    the legs that turn. At the end every joint is where it was. How far the body turns depends on
+    the path alone, not on the time that it takes (Frohlich 1979).
+
+    Parameters
+    ----------
+    model : str or Model
+    cycles : int
+        How often that is repeated.
+    torso : float
+        How far the torso is twisted, rad; negative to turn the other way.
+    legs : mapping of str to float, optional
+        What the hips do while they are hard to turn (rad, by joint): 45° apart by default;
+        {"hip_flexion": 1.57} pikes instead.
+    arms : float
+        Abduction of the arms when they are out, rad.
+    move : float
+        How long each move takes, s.
+
+    Returns
+    -------
+    Maneuver
+
+    Raises
+    ------
+    SomersaultError
+        For fewer than one cycle.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> bool(abs(so.cat_turn(cycles=1).fly().landing.twist) > 0.3)
+    True
     """
     whole_number("cycles", cycles, 1, _MOST_CYCLES)
     body, straight = load(model), _sides(model, "layout")
@@ -113,16 +165,43 @@ def arm_tilt(
     twists: int | None = 1,
     duration: float | None = None,
 ) -> Maneuver:
-    """A layout somersault, arms out, that one arm raised and one lowered make twist.
+    """A layout somersault, arms out, that twists because one arm is raised and the other lowered.
 
-    From `begin` on the left arm goes to an abduction of `raised`, the right one to `lowered` (rad),
-    in `move` s: the body leans against them, its principal axes are tilted, and it twists. After
-    `twists` whole twists the same move backwards takes the tilt out again. The moment is found by
-    flying: the moves are placed symmetrically about a multiple of half a twist, and then motion
-    from there on is the mirror image in time of motion until there (of an athlete without front
-    and back exactly, otherwise nearly). None never stops. `spin` is the somersault rate in rad/s;
-    `duration` (s) is by default half a second after the last move, or 2 s. Raises SomersaultError
-    for less than one twist, and where that many never come.
+    The body leans against the arms: its principal axes are tilted against the angular momentum, and
+    it twists. After some whole twists the same move backwards takes the tilt out again. The moment
+    for it is found by flying: the moves are placed symmetrically about a multiple of half a twist,
+    and the motion from there on is then the mirror image in time of the motion until there (exactly
+    for an athlete without front and back, nearly for others).
+
+    Parameters
+    ----------
+    model : str or Model
+    spin : float
+        Somersault rate, rad/s.
+    begin, move : float
+        When the first move begins, and how long each takes, s.
+    raised, lowered : float
+        Abduction of the left and the right arm, rad.
+    twists : int or None
+        After how many whole twists it stops; None never stops.
+    duration : float, optional
+        s; half a second after the last move unless it is given, or 2 s where it never stops.
+
+    Returns
+    -------
+    Maneuver
+
+    Raises
+    ------
+    SomersaultError
+        For fewer than one twist, and where that many never come.
+
+    Examples
+    --------
+    >>> import math
+    >>> import somersault as so
+    >>> round(so.arm_tilt().fly().landing.twist / (2 * math.pi), 1)
+    1.0
     """
     body, out = load(model), _sides(model, "T")
     begin, move = _seconds(begin=begin), _seconds(move=move)
@@ -151,12 +230,36 @@ def torque_twist(
     pose: str = "layout",
     duration: float = 1.2,
 ) -> Maneuver:
-    """A somersault that twists from takeoff on, because the ground has given it both (§6.2).
+    """A somersault that twists from takeoff on, because the ground has given it both (section 6.2).
 
-    Upright at takeoff in a named pose, turning at `spin` about body axis 2 and at `twist_rate`
-    about 3 (rad/s; of the model's `axes` the first and the last). The body's long axis is tilted
-    from then on against the angular momentum, which lies along inertial axis 2; all that the pose
-    does not hold still is left to the flight. Raises SomersaultError for poses that are none.
+    The body takes off upright, turning about its axes of somersault and of twist. Its long axis is
+    tilted from then on against the angular momentum, which lies along the inertial axis of
+    somersault.
+
+    Parameters
+    ----------
+    model : str or Model
+    spin, twist_rate : float
+        rad/s about the body's axes of somersault and of twist.
+    pose : str
+        A named pose, which the flight holds.
+    duration : float
+        s.
+
+    Returns
+    -------
+    Maneuver
+
+    Raises
+    ------
+    SomersaultError
+        For a pose that does not exist.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> bool(so.torque_twist().fly().landing.twist > 5.0)
+    True
     """
     body, held = load(model), _sides(model, pose)
     along, _, up = (np.eye(3)[axis - 1] for axis in body.axes)
@@ -186,11 +289,40 @@ def hula(
 ) -> Maneuver:
     """A piked somersault that a quarter of a hula movement makes twist (§6.3; Yeadon 1984).
 
-    Piked by `pike` (rad), the arms as in the pose `arms`, the hips swivel from `begin` on, in
-    `quarter` s, until the legs are to the left of the body by `side` instead of in front; negative
-    is to the right. So they are held for `hold` s, and then extend in `extend` s, while the arms go
-    to where the pose `finish` has them. `spin` is the somersault rate at takeoff in rad/s. Raises
-    SomersaultError for poses that are none.
+    Piked, the hips swivel until the legs are to the side of the body instead of in front. They are
+    held there, and then extend while the arms go to where the last pose has them.
+
+    Parameters
+    ----------
+    model : str or Model
+    spin : float
+        Somersault rate at takeoff, rad/s.
+    pike : float
+        Hip flexion at takeoff, rad.
+    side : float
+        How far the legs swivel to the left, rad; negative to the right.
+    arms, finish : str
+        Named poses of the arms at takeoff, and of the body at the end.
+    begin, quarter, hold, extend : float
+        When the hips begin to swivel, how long that takes, how long they are held, and how long
+        they take to extend, s.
+    duration : float
+        s.
+
+    Returns
+    -------
+    Maneuver
+
+    Raises
+    ------
+    SomersaultError
+        For poses that do not exist.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> bool(abs(so.hula().fly().landing.twist) > 1.0)
+    True
     """
     body, end = load(model), _sides(model, finish)
     bent = _sides(model, arms) | _both(body, {"hip_flexion": number("pike", pike)})
@@ -212,10 +344,31 @@ def hula(
 
 
 def twist_time(maneuver: Maneuver, twists: float) -> float:
-    """When so many `twists` have been done, either way, in s: to rounding, by flying until there.
+    """When a maneuver has twisted so many times, either way, to rounding.
 
-    The joints are held after their last keyframe. Raises SomersaultError where the body does not
-    twist so far.
+    It is found by flying until there. Joints are held after their last keyframe.
+
+    Parameters
+    ----------
+    maneuver : Maneuver
+    twists : float
+        From takeoff, in whole turns.
+
+    Returns
+    -------
+    float
+        s.
+
+    Raises
+    ------
+    SomersaultError
+        Where the body does not twist so far.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> 0.0 < so.flight.twist_time(so.torque_twist(), 0.5) < 1.0
+    True
     """
     target = 2 * math.pi * number("twists", twists)
     longest = max(maneuver.duration, 1.0)

@@ -44,12 +44,33 @@ GRAVITY = (0.0, 0.0, -9.81)  # m/s², inertial axes; 3 is up
 
 
 @dataclass(frozen=True)
-class Stop:
-    """A prop that pushes a joint back where it has passed `angle`, and never pulls.
+class Prop:
+    """A prop that pushes a joint back where it has passed an angle, and never pulls.
 
-    It keeps the joint's coordinate at `angle` or above (`side` 1) or below (`side` −1). Passed by
-    c > 0 it gives `stiffness` c (1 + `damping` ċ), N m/rad and s/rad: a load that is continuous
-    when it touches and when it leaves (Hunt and Crossley 1975, J. Appl. Mech. 42, 440).
+    Passed by c > 0 it gives `stiffness` c (1 + `damping` ċ): a load that is continuous when the
+    prop touches and when it lets go (Hunt and Crossley 1975, J. Appl. Mech. 42, 440).
+
+    Parameters
+    ----------
+    angle : float
+        rad.
+    side : {1, -1}
+        1 keeps the joint's coordinate at `angle` or above, −1 below.
+    stiffness : float
+        N m/rad.
+    damping : float
+        s/rad.
+
+    Raises
+    ------
+    SomersaultError
+        For numbers that do not make sense.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> so.Prop(0.0, side=-1, stiffness=1e4).side
+    -1
     """
 
     angle: float
@@ -58,13 +79,13 @@ class Stop:
     damping: float = 0.0
 
     def __post_init__(self) -> None:
-        number("a stop's angle", self.angle)
+        number("a prop's angle", self.angle)
         if not isinstance(self.side, int | float | np.number) or self.side not in (1, -1):
-            raise SomersaultError(f"a stop's side is 1 or -1, and is {self.side!r}")
-        if number("a stop's stiffness", self.stiffness) <= 0:
-            raise SomersaultError(f"a stop's stiffness must be positive, and is {self.stiffness:g}")
-        if number("a stop's damping", self.damping) < 0:
-            raise SomersaultError(f"a stop's damping is not negative, and is {self.damping:g}")
+            raise SomersaultError(f"a prop's side is 1 or -1, and is {self.side!r}")
+        if number("a prop's stiffness", self.stiffness) <= 0:
+            raise SomersaultError(f"a prop's stiffness must be positive, and is {self.stiffness:g}")
+        if number("a prop's damping", self.damping) < 0:
+            raise SomersaultError(f"a prop's damping is not negative, and is {self.damping:g}")
 
     def torque(self, q: Any, u: Any) -> Any:
         """What it gives at a coordinate and its rate, N m; symbols or arrays."""
@@ -74,14 +95,23 @@ class Stop:
 
 @dataclass(frozen=True, eq=False)
 class Swing:
-    """The motion of a model with a fixed base from rest or a push, a `somersault.history.History`.
+    """The motion of a model with a fixed base, as `swing` returns it: a `history.History`.
 
-    `times` (T,) s, `q` and `u` (T, joints), the last where it `ended` ("duration", "event").
+    Attributes
+    ----------
+    times : ndarray, (T,)
+        s; the last is when it ended.
+    q, u : ndarray, (T, joints)
+        Joint coordinates and rates.
+    ended : str
+        "duration" or "event".
+    dataset : xarray.Dataset
+        All of it over `time` and `joint`, labelled, with units and energies.
     """
 
     model: Model
     gravity: Array
-    stops: Mapping[str, Stop]
+    stops: Mapping[str, Prop]
     times: Array
     q: Array
     u: Array
@@ -177,7 +207,17 @@ class Swing:
 
 @dataclass(frozen=True)
 class Release:
-    """A body let go: `takeoff`, where its centre of mass is (m, ground's axes), and when (s)."""
+    """A body that has been let go.
+
+    Attributes
+    ----------
+    takeoff : Takeoff
+        Of the free body, with the position of its centre of mass.
+    centre : ndarray, (3,)
+        Where its centre of mass is, in the ground's axes, m.
+    time : float
+        When, s.
+    """
 
     takeoff: Takeoff
     centre: Array
@@ -192,19 +232,50 @@ def swing(
     rates: Mapping[str, float] | None = None,
     gravity: Sequence[float] = GRAVITY,
     until: tuple[str, float] | None = None,
-    stops: Mapping[str, Stop] | None = None,
+    stops: Mapping[str, Prop] | None = None,
     samples: int = 401,
     accuracy: float = 1e-10,
 ) -> Swing:
-    """Swing a model with a fixed base, for `duration` seconds or `until` a joint has an angle.
+    """The swing of a model with a fixed base.
 
-    `angles` and `rates` are those of the start by joint; a joint that is not named is at its
-    reference, at rest. Springs and dampers are the model's. `gravity` is in m/s² along the
-    ground's axes. The event (joint, rad) is found to rounding. `accuracy` bounds each step's
-    error relative to 1 + the size of the state. Raises SomersaultError for a free base, a ball
-    joint, an unknown name, or anything that is no number.
+    Parameters
+    ----------
+    model : Model
+        With a fixed base, such as a `mounted` one; its joints are hinges and slides, with their
+        springs and dampers.
+    angles, rates : mapping of str to float
+        At the start, by joint, rad and rad/s; a joint that is not named is at its reference, at
+        rest.
+    duration : float
+        s.
+    gravity : sequence of float, (3,)
+        m/s², along the ground's axes.
+    until : (str, float), optional
+        A joint and the angle (rad) at which the swing ends, found to rounding.
+    stops : mapping of str to Prop, optional
+        Props by joint.
+    samples : int
+        How many evenly spaced times are kept.
+    accuracy : float
+        Bounds each step's error relative to 1 + the size of the state.
+
+    Returns
+    -------
+    Swing
+
+    Raises
+    ------
+    SomersaultError
+        For a free base, a ball joint, an unknown name, or anything that is no number.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> hanging = so.load("furrer", base="fixed")
+    >>> so.swing(hanging, {"left_shoulder": 0.3}, 0.5).ended
+    'duration'
     """
-    props = {n: instance(f"stop {n}", s, Stop) for n, s in by_name("stops", stops).items()}
+    props = {n: instance(f"stop {n}", s, Prop) for n, s in by_name("stops", stops).items()}
     _check(instance("model", model, Model), props)
     if number("duration", duration) <= 0:
         raise SomersaultError(f"a swing needs a duration above 0 s, and {duration:g} is none")
@@ -229,20 +300,36 @@ def swing(
 
 
 def released(
-    found: Swing, mount: Mount, joints: Mapping[str, JointTakeoff] | None = None
+    swung: Swing, mount: Mount, joints: Mapping[str, JointTakeoff] | None = None
 ) -> Release:
     """The takeoff of the body that a mount lets go at the end of a swing.
 
-    Attitude, angular velocity, velocity of the centre of mass, joint angles and rates are those
-    of the last moment. `joints` says what each joint does in flight (its angle and rate are
-    filled in); one that is not named keeps its spring and damper. Raises SomersaultError for a
-    swing of another model.
+    Letting go changes no position and no velocity: attitude, angular velocity, the velocity of the
+    centre of mass, joint angles and rates are those of the last moment.
+
+    Parameters
+    ----------
+    swung : Swing
+        Of `mount.held`.
+    mount : Mount
+    joints : mapping of str to JointTakeoff, optional
+        What each joint does in flight; its angle and rate are filled in. A joint that is not named
+        keeps its spring and damper.
+
+    Returns
+    -------
+    Release
+
+    Raises
+    ------
+    SomersaultError
+        For the swing of another model.
     """
-    instance("what is released", found, Swing)
+    instance("what is released", swung, Swing)
     instance("mount", mount, Mount)
-    if found.model != mount.held:
-        raise SomersaultError(f"this is a swing of {found.model.name}, not of the mount given")
-    q, u = found.q[-1], found.u[-1]
+    if swung.model != mount.held:
+        raise SomersaultError(f"this is a swing of {swung.model.name}, not of the mount given")
+    q, u = swung.q[-1], swung.u[-1]
     turn, origin, omega, velocity = _base_motion(mount, q, u)
     ahead = len(mount.carrier.joints)
     rider = mount.rider
@@ -257,14 +344,15 @@ def released(
         joint.name: _let_go(joint, setups.get(joint.name), own[k], own_rates[k])
         for k, joint in enumerate(rider.joints)
     }
+    centre = origin + turn @ centre_of_mass(rider, own)
     takeoff = Takeoff(
         quaternion=quaternion_from_matrix(turn).tolist(),
         angular_velocity=omega.tolist(),
+        position=centre.tolist(),
         velocity=(turn @ linear).tolist(),
         joints=takeoffs,
     )
-    centre = origin + turn @ centre_of_mass(rider, own)
-    return Release(takeoff, centre, float(found.times[-1]))
+    return Release(takeoff, centre, float(swung.times[-1]))
 
 
 def _base_motion(mount: Mount, q: Array, u: Array) -> tuple[Array, Array, Array, Array]:
@@ -294,7 +382,7 @@ def height_energy(equations: Equations, q: ArrayLike, gravity: ArrayLike = GRAVI
     return -model.mass * centre_of_mass(model, q) @ np.asarray(gravity, float)
 
 
-def _check(model: Model, stops: Mapping[str, Stop]) -> None:
+def _check(model: Model, stops: Mapping[str, Prop]) -> None:
     if model.free:
         raise SomersaultError(
             f"{model.name} is free in the air; a swing needs something that holds it (mounted)"
@@ -309,7 +397,7 @@ def _check(model: Model, stops: Mapping[str, Stop]) -> None:
 # ------------------------------------------------------------------------------- symbols
 
 
-def _slope(model: Model, gravity: Array, stops: Mapping[str, Stop]) -> ca.Function:
+def _slope(model: Model, gravity: Array, stops: Mapping[str, Prop]) -> ca.Function:
     forward = Equations(model).expression("forward_dynamics").function()
     n = len(model.joints)
     x = ca.SX.sym("x", 2 * n + 1)
@@ -331,7 +419,7 @@ def _gauge(model: Model, until: tuple[str, float]) -> ca.Function:
 
 
 def _stop_torques(
-    model: Model, stops: Mapping[str, Stop], q: Sequence[Any], u: Sequence[Any]
+    model: Model, stops: Mapping[str, Prop], q: Sequence[Any], u: Sequence[Any]
 ) -> list[Any]:
     return [
         stops[joint.name].torque(q[k], u[k]) if joint.name in stops else 0.0

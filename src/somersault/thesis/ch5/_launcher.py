@@ -21,8 +21,8 @@ from somersault.flight import (
     GRAVITY,
     BallisticPath,
     JointTakeoff,
+    Prop,
     Release,
-    Stop,
     Swing,
     Takeoff,
     height_energy,
@@ -48,7 +48,7 @@ WOUND = 2 * np.pi  # rad that the doll is wound back from hanging (ours: one tur
 SPRING = 0.15  # N m/rad of the launcher's spring (ours)
 ROD = 1.4e4  # N m/rad about the shoulder: a steel rod of 1/16 in, 0.1 m from it (ours)
 ROD_LEVER = 0.1  # m from the shoulder to where the rod props the arm (ours)
-ROD_DAMPING = 30.0  # s/rad of `Stop` (ours)
+ROD_DAMPING = 30.0  # s/rad of `Prop` (ours)
 _CLAMP, _BAR = "clamp", "bar"
 G = -GRAVITY[2]
 _LONGEST_SWING = 5.0  # s
@@ -109,7 +109,7 @@ class Launch:
         # The rods already bear the arms' pretension and weight when the clamp is let go.
         loads = Equations(held).inverse_dynamics(q, still, still, GRAVITY)
         rods = {
-            joint.name: Stop(start[joint.name] + load / ROD, _side(joint.name), ROD, ROD_DAMPING)
+            joint.name: Prop(start[joint.name] + load / ROD, _side(joint.name), ROD, ROD_DAMPING)
             for joint, load in zip(held.joints, loads.tolist(), strict=True)
             if joint.name != _BAR
         }
