@@ -12,6 +12,7 @@ from somersault.dynamics._composite import (
     mass_matrix,
     outboard_inertia,
 )
+from somersault.dynamics._constrained import constrained_dynamics
 from somersault.dynamics._equations import Equations
 from somersault.dynamics._motion import placements
 from somersault.dynamics._newton_euler import Momentum, inverse_dynamics, momentum
@@ -30,6 +31,7 @@ __all__ = [
     "Tree",
     "c_code",
     "composite_bodies",
+    "constrained_dynamics",
     "forward_dynamics",
     "inverse_dynamics",
     "latex",
