@@ -60,10 +60,10 @@ MISTAKES: dict[str, Callable[[], Any]] = {
     "stop bar must be a somersault.Prop": lambda: swing(stops={"bar": 1.0}),
     "samples must be a whole number from 2": lambda: swing(samples="many"),
     "accuracy -1 is out of reach": lambda: swing(accuracy=-1.0),
-    "a stop's angle": lambda: so.Prop(np.nan),
-    "a stop's side": lambda: so.Prop(1.0, 0),
-    "a stop's stiffness must be positive": lambda: so.Prop(1.0, stiffness=-1.0),
-    "a stop's damping": lambda: so.Prop(1.0, damping=-1.0),
+    "a prop's angle": lambda: so.Prop(np.nan),
+    "a prop's side": lambda: so.Prop(1.0, 0),
+    "a prop's stiffness must be positive": lambda: so.Prop(1.0, stiffness=-1.0),
+    "a prop's damping": lambda: so.Prop(1.0, damping=-1.0),
     "what is released must be a somersault.Swing": lambda: so.released(None, MOUNT),
     "takeoff of joint left_shoulder must be": lambda: so.released(
         swing(), MOUNT, {"left_shoulder": 1.0}
