@@ -27,6 +27,7 @@ def test_it_is_where_a_flight_has_its_centre_of_mass(gravity):
     flight = so.fly("furrer", so.Takeoff(velocity=velocity, spin=5.0), 1.3, gravity=gravity)
     fallen = flight.dataset["centre_of_mass"].values
     np.testing.assert_allclose(path.at(flight.times), position + fallen, atol=1e-14)
+    assert flight.ballistic_path.apex == pytest.approx(path.apex - path.height, abs=1e-14)
     time = path.time_to(0.3)
     up = -np.array(gravity) / np.linalg.norm(gravity)
     assert path.at([time])[0] @ up == pytest.approx(0.3, abs=1e-12)
@@ -47,13 +48,19 @@ def test_a_body_that_leaves_downwards_has_no_higher_place_to_land():
     [
         ({"velocity": (0, 0)}, "velocity must be 3 numbers"),
         ({"position": (0, 0, np.nan)}, "position must be finite"),
-        ({"gravity": (0, 0, 0)}, "without gravity"),
         ({"gravity": None}, "gravity must be 3 numbers"),
     ],
 )
 def test_what_is_no_path(given, said):
     with pytest.raises(so.SomersaultError, match=said):
         BallisticPath(**{"position": (0, 0, 1), "velocity": (0, 0, 1)} | given)
+
+
+def test_without_gravity_it_goes_straight_on_and_never_down():
+    path = BallisticPath((0, 0, 1), (1, 0, 2), (0, 0, 0))
+    np.testing.assert_array_equal(path.at([0.0, 2.0]), [[0, 0, 1], [2, 0, 5]])
+    with pytest.raises(so.SomersaultError, match="without gravity"):
+        path.time_to(0.0)
 
 
 def test_a_height_out_of_reach_is_refused_with_the_greatest():

@@ -25,7 +25,7 @@ def flown(tilt: float, twist: float) -> so.Landing:
 
 
 def test_the_map_is_of_flights_flown_one_by_one(nominal):
-    found = landing_map(TWIST.model, TWIST.takeoff, TWIST.duration, nominal, span=0.2, points=3)
+    found = landing_map(TWIST, nominal, span=0.2, points=3)
     error = found.dataset["landing_error"]
     assert error.dims == ("takeoff_tilt", "takeoff_twist")
     wanted = nominal.landing
@@ -45,7 +45,7 @@ def test_a_landing_hits_its_own_target(nominal):
 
 
 def test_derivatives_are_those_of_larger_steps_flown_one_by_one():
-    found = landing_derivatives(TWIST.model, TWIST.takeoff, TWIST.duration)
+    found = landing_derivatives(TWIST)
     step = 1e-3
     for name, ends in {
         "takeoff.tilt": (flown(step, 0), flown(-step, 0)),
@@ -59,25 +59,21 @@ def test_derivatives_are_those_of_larger_steps_flown_one_by_one():
 
 def test_derivatives_of_a_steady_spin_are_known():
     """A rigid spin about a principal axis turns by ω t, whatever its somersault at takeoff."""
-    takeoff = so.Takeoff(somersault=0.4, spin=6.0)
-    found = landing_derivatives(
-        "book", takeoff, 0.5, of=("somersault",), to=("takeoff.somersault", "takeoff.spin")
-    )
+    spin = so.Maneuver(so.load("book"), so.Takeoff(somersault=0.4, spin=6.0), 0.5)
+    found = landing_derivatives(spin, ("somersault",), ("takeoff.somersault", "takeoff.spin"))
     np.testing.assert_allclose(found.values, [[1.0, 0.5]], atol=1e-6)
 
 
 @pytest.mark.parametrize(
     ("call", "said"),
     [
-        (lambda f: landing_map("book", so.Takeoff(spin=6.0), 0.1, f, span=0.0), "span 0 rad"),
-        (lambda f: landing_map("book", so.Takeoff(spin=6.0), 0.1, f, points=0), "count"),
-        (lambda f: landing_derivatives("book", so.Takeoff(spin=6.0), 0.1, step=-1.0), "step -1"),
-        (lambda f: landing_derivatives("book", so.Takeoff(spin=6.0), 0.1, of=("tlt",)), "tlt"),
-        (lambda f: landing_derivatives("book", so.Takeoff(spin=6.0), 0.1, to="takeoff.tilt"),
-         "list of names"),
+        (lambda spin: landing_map(spin, span=0.0), "span 0 rad"),
+        (lambda spin: landing_map(spin, points=0), "count"),
+        (lambda spin: landing_derivatives(spin, step=-1.0), "step -1"),
+        (lambda spin: landing_derivatives(spin, of=("tlt",)), "tlt"),
+        (lambda spin: landing_derivatives(spin, to="takeoff.tilt"), "list of names"),
     ],
-)  # fmt: skip
+)
 def test_what_is_refused(call, said):
-    flight = so.fly("book", so.Takeoff(spin=6.0), 0.1)
     with pytest.raises(so.SomersaultError, match=said):
-        call(flight)
+        call(so.Maneuver(so.load("book"), so.Takeoff(spin=6.0), 0.1))

@@ -32,7 +32,7 @@ class BallisticPath:
     Raises
     ------
     SomersaultError
-        For anything that is not three finite numbers, and for no gravity at all.
+        For anything that is not three finite numbers.
 
     Examples
     --------
@@ -51,12 +51,13 @@ class BallisticPath:
     def __post_init__(self) -> None:
         for name in ("position", "velocity", "gravity"):
             object.__setattr__(self, name, numbers(name, getattr(self, name), 3))
-        if not np.any(self.gravity):
-            raise SomersaultError("without gravity nothing comes down; give gravity in m/s²")
 
     @property
     def _pull(self) -> float:
-        return float(np.linalg.norm(self.gravity))
+        size = float(np.linalg.norm(self.gravity))
+        if not size:
+            raise SomersaultError("without gravity nothing comes down; give gravity in m/s²")
+        return size
 
     @property
     def _up(self) -> Array:
@@ -96,7 +97,7 @@ class BallisticPath:
         Raises
         ------
         SomersaultError
-            For a height that is never reached after takeoff.
+            For a height that is never reached after takeoff, and without gravity.
         """
         drop = self.apex - number("height", height)
         time = (self.climb + float(np.sqrt(2 * self._pull * max(drop, 0.0)))) / self._pull

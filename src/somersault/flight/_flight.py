@@ -12,6 +12,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.datasets import save_history
 from somersault.attitude import matrix_from_quaternion, unwrapped_angles
+from somersault.flight._ballistic import BallisticPath
 from somersault.flight._course import Course
 from somersault.flight._start import Start
 from somersault.flight._system import System
@@ -129,8 +130,12 @@ class Flight:
     @cached_property
     def centre_of_mass(self) -> Array:
         """Of the whole body in inertial axes, (time, 3), m."""
-        fallen = 0.5 * self.times[:, None] ** 2 * self.gravity
-        return self.position + self.times[:, None] * self.velocity + fallen
+        return self.ballistic_path.at(self.times)
+
+    @property
+    def ballistic_path(self) -> BallisticPath:
+        """The parabola of the centre of mass: its apex, and when it comes down to a height."""
+        return BallisticPath(self.position, self.velocity, self.gravity)
 
     @cached_property
     def times(self) -> Array:

@@ -44,7 +44,7 @@ def principal_axes_along(flight: Flight) -> PrincipalAxes:
     >>> bool(layout > 2 * tuck)
     True
     """
-    return principal_axes(flight.system.equations.inertia(flight.dataset["joint_angle"].values))
+    return principal_axes(flight.system.equations.inertia(flight.joint_coordinates))
 
 
 def principal_attitude(flight: Flight) -> tuple[Array, Array]:
@@ -84,8 +84,8 @@ def principal_attitude(flight: Flight) -> tuple[Array, Array]:
             "without angular momentum there is nothing to measure tilt and twist about; use the "
             "body's own, flight.dataset.tilt and .twist"
         )
-    turn = matrix_from_quaternion(flight.dataset["quaternion"].values)
-    axes = flight.system.model.axes
+    turn = matrix_from_quaternion(flight.base_quaternion)
+    axes = flight.model.axes
     sense = -1.0 if h[axes[0] - 1] < 0 else 1.0
     frame = turn @ principal_axes_along(flight).axes
     cosines = np.einsum("tij,i->tj", frame, sense * h / size)
@@ -113,7 +113,7 @@ def rigid_continuation(flight: Flight) -> rigid.RigidMotion:
     True
     """
     about = principal_axes_along(flight)
-    turn = matrix_from_quaternion(flight.states[-1, :4]) @ about.axes[-1]
+    turn = matrix_from_quaternion(flight.base_quaternion[-1]) @ about.axes[-1]
     return rigid.RigidMotion(
         about.inertias[-1],
         flight.angular_velocity[-1] @ about.axes[-1],

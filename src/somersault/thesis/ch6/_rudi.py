@@ -18,7 +18,15 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault.ensembles import failed, landing_derivatives, landing_map
-from somersault.flight import Flight, JointTakeoff, Takeoff, compliant, fly, with_momentum
+from somersault.flight import (
+    Flight,
+    JointTakeoff,
+    Maneuver,
+    Takeoff,
+    compliant,
+    fly,
+    with_momentum,
+)
 from somersault.model import load
 
 MODEL = "gymnast"
@@ -107,10 +115,8 @@ def landings(
     takeoff: Takeoff, points: int = 21, against: Flight | None = None, kept: Kept = "rudi"
 ) -> Landings:
     """Flights from a grid of tilt and twist at takeoff, and the error e of section 6.3.2."""
-    flown = landing_map(
-        MODEL, takeoff, landing_time(kept), against or nominal(kept), span=SPAN, points=points,
-        accuracy=_ACCURACY, steps=_STEPS,
-    ).dataset  # fmt: skip
+    maneuver = Maneuver(load(MODEL), takeoff, landing_time(kept), accuracy=_ACCURACY, steps=_STEPS)
+    flown = landing_map(maneuver, against or nominal(kept), span=SPAN, points=points).dataset
     return Landings(
         flown["takeoff_tilt"].values,
         flown["landing_error"].values,
@@ -138,8 +144,10 @@ def error_map(
 @cache
 def sensitivity(frequency: float | None, pose: Pose = "wrap") -> Array:
     """d(somersault, tilt, twist at landing) / d(tilt, twist at takeoff), (3, 2)."""
-    takeoff = strategy(frequency, pose)
-    return landing_derivatives(MODEL, takeoff, landing_time(), steps=10 * _STEPS).values
+    maneuver = Maneuver(
+        load(MODEL), strategy(frequency, pose), landing_time(), accuracy=1e-10, steps=10 * _STEPS
+    )
+    return landing_derivatives(maneuver).values
 
 
 def joint_names() -> tuple[str, ...]:
