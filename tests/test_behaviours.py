@@ -180,6 +180,46 @@ def test_a_pair_is_coupled_to_the_mirror_image_of_its_leader() -> None:
     assert end["right_elbow"] == pytest.approx(0.9)
 
 
+@pytest.mark.parametrize("factor", [1.0, -0.6])
+def test_gears_to_a_joint_that_moves_freely_keep_energy_and_momentum(factor: float) -> None:
+    """Ideal gears do no work; the follower's own spring acts through them."""
+    joints = {
+        "left_elbow": JointTakeoff.sprung(0.6, 1.5, stiffness=4.0, rest=0.2),
+        "right_elbow": JointTakeoff.coupled(
+            leader="left_elbow", factor=factor, offset=0.8, stiffness=2.0, rest=0.5
+        ),
+        "left_shoulder_abduction": JointTakeoff.free(0.9),
+    }
+    flight = so.fly(GYMNAST, Takeoff(spin=5.0, tilt=0.1, joints=joints), 1.0, accuracy=1e-11)
+    left, right = (
+        flight.dataset["joint_angle"].sel(joint=name).values
+        for name in ("left_elbow", "right_elbow")
+    )
+    np.testing.assert_allclose(right, factor * left + 0.8, atol=1e-13)
+    assert np.ptp(left) > 0.3
+    assert flight.energy_drift is not None
+    assert flight.energy_drift < 1e-10
+    assert flight.momentum_drift < 1e-12
+
+
+def test_gears_that_symmetry_makes_anyway_change_nothing() -> None:
+    """A symmetric body in a symmetric spin: with the right arm geared to the left or not."""
+    spring = {"stiffness": 20.0, "rest": 0.3}
+    both = {"shoulder": JointTakeoff.sprung(0.9, 0.5, **spring)}
+    geared = {
+        "left_shoulder": JointTakeoff.sprung(0.9, 0.5, **spring),
+        "right_shoulder": JointTakeoff.coupled(
+            leader="left_shoulder", factor=-1.0, stiffness=20.0, rest=-0.3
+        ),
+    }
+    flown = [
+        so.fly("furrer", Takeoff(spin=5.0, joints=j), 0.5, accuracy=1e-12) for j in (both, geared)
+    ]
+    assert apart(*(flight.landing.quaternion for flight in flown)) < 1e-9
+    angles = [flight.landing.joints["left_shoulder"] for flight in flown]
+    assert angles[0] == pytest.approx(angles[1], abs=1e-9)
+
+
 @pytest.mark.parametrize(
     ("joints", "said"),
     [

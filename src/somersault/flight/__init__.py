@@ -14,7 +14,6 @@ from somersault.flight._maneuvers import (
     hula,
     inertia_change,
     torque_twist,
-    twist_time,
 )
 from somersault.flight._many import Flights, flights
 from somersault.flight._prescribed import prescribed
@@ -23,11 +22,11 @@ from somersault.flight._principal import (
     principal_axes_along,
     rigid_continuation,
 )
+from somersault.flight._prop import Prop
 from somersault.flight._report import ENDINGS, Report, landing_error, landing_target
 from somersault.flight._spec import KEYS
 from somersault.flight._swing import (
     GRAVITY,
-    Prop,
     Release,
     Swing,
     height_energy,
@@ -35,6 +34,7 @@ from somersault.flight._swing import (
     swing,
 )
 from somersault.flight._takeoff import Takeoff
+from somersault.flight._twist_time import twist_time
 from somersault.flight._work import joint_power, joint_work
 from somersault.flight.behaviours import JointTakeoff
 

@@ -10,27 +10,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
-from somersault._core.array import Array
-from somersault._core.checks import by_name, name_list, whole_number
+from somersault._core.checks import name_list, whole_number
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 from somersault.attitude import in_sequence
-from somersault.dynamics import Equations
 from somersault.flight._maneuver import Maneuver
+from somersault.flight._poses import both, inertia, named, seconds, through
 from somersault.flight._takeoff import Takeoff
-from somersault.model import Model, load, named_pose
-from somersault.model import pose as posed
+from somersault.flight._twist_time import twist_time
+from somersault.model import Model, load
 
 Keyframes = Mapping[str, Sequence[tuple[float, float]]]
-_SIDES = ("left", "right")
 _LEGS_APART = {"hip_abduction": math.pi / 4}
 _MOST_CYCLES = 1_000  # or twists
-_LONGEST = 20.0  # s: whatever has not twisted until then will not
-_FINE = 1e-13  # s
 
 
 def inertia_change(
@@ -82,12 +77,12 @@ def inertia_change(
         raise SomersaultError(f"axis is {axis!r}; give {a} for a somersault or {c} for a twist")
     if len(name_list("poses", poses)) != 2:
         raise SomersaultError(f"poses are two, from which to which, and are {poses!r}")
-    body, (first, last) = load(model), (_sides(model, name) for name in poses)
-    begin, move = _seconds(begin=begin), _seconds(move=move)
-    h = number("spin", spin) * _inertia(body, first)[axis - 1, axis - 1] * np.eye(3)[axis - 1]
-    moves = _through([(begin, first), (begin + move, last)])
+    body, (first, last) = load(model), (named(model, name) for name in poses)
+    begin, move = seconds(begin=begin), seconds(move=move)
+    h = number("spin", spin) * inertia(body, first)[axis - 1, axis - 1] * np.eye(3)[axis - 1]
+    moves = through([(begin, first), (begin + move, last)])
     return Maneuver.moves(
-        body, moves, Takeoff(angular_momentum=h.tolist()), _seconds(duration=duration)
+        body, moves, Takeoff(angular_momentum=h.tolist()), seconds(duration=duration)
     )
 
 
@@ -138,9 +133,9 @@ def cat_turn(
     True
     """
     whole_number("cycles", cycles, 1, _MOST_CYCLES)
-    body, straight = load(model), _sides(model, "layout")
-    apart = straight | _both(body, _LEGS_APART if legs is None else legs)
-    out = straight | _both(body, {"shoulder_abduction": number("arms", arms)})
+    body, straight = load(model), named(model, "layout")
+    apart = straight | both(body, _LEGS_APART if legs is None else legs)
+    out = straight | both(body, {"shoulder_abduction": number("arms", arms)})
     twist = number("torso", torso)
     row = [straight, apart, apart | {"torso_twist": twist}]
     for cycle in range(cycles):
@@ -148,8 +143,8 @@ def cat_turn(
         end = twist if cycle < cycles - 1 else 0.0
         row += [apart | {"torso_twist": -twist}, apart | {"torso_twist": end}]
     row.append(straight)
-    span = _seconds(move=move)
-    moves = _through([(span * k, pose) for k, pose in enumerate(row)])
+    span = seconds(move=move)
+    moves = through([(span * k, pose) for k, pose in enumerate(row)])
     still = Takeoff(angular_momentum=(0.0, 0.0, 0.0))
     return Maneuver.moves(body, moves, still, span * (len(row) - 1))
 
@@ -203,8 +198,8 @@ def arm_tilt(
     >>> round(so.arm_tilt().fly().landing.twist / (2 * math.pi), 1)
     1.0
     """
-    body, out = load(model), _sides(model, "T")
-    begin, move = _seconds(begin=begin), _seconds(move=move)
+    body, out = load(model), named(model, "T")
+    begin, move = seconds(begin=begin), seconds(move=move)
     asymmetric = out | {
         "left_shoulder_abduction": number("raised", raised),
         "right_shoulder_abduction": number("lowered", lowered),
@@ -212,14 +207,14 @@ def arm_tilt(
     stations = [(begin, out), (begin + move, asymmetric)]
     start = Takeoff(spin=number("spin", spin))
     if twists is None:
-        longest = _seconds(duration=2.0 if duration is None else duration)
-        return Maneuver.moves(body, _through(stations), start, longest)
+        longest = seconds(duration=2.0 if duration is None else duration)
+        return Maneuver.moves(body, through(stations), start, longest)
     whole_number("twists, unless it is None,", twists, 1, _MOST_CYCLES)
-    middle = twist_time(Maneuver.moves(body, _through(stations), start, begin + move), twists / 2)
+    middle = twist_time(Maneuver.moves(body, through(stations), start, begin + move), twists / 2)
     again = 2 * middle - begin - move
     stations += [(again, asymmetric), (again + move, out)]
-    last = again + move + 0.5 if duration is None else _seconds(duration=duration)
-    return Maneuver.moves(body, _through(stations), start, last)
+    last = again + move + 0.5 if duration is None else seconds(duration=duration)
+    return Maneuver.moves(body, through(stations), start, last)
 
 
 def torque_twist(
@@ -261,16 +256,16 @@ def torque_twist(
     >>> bool(so.torque_twist().fly().landing.twist > 5.0)
     True
     """
-    body, held = load(model), _sides(model, pose)
+    body, held = load(model), named(model, pose)
     along, _, up = (np.eye(3)[axis - 1] for axis in body.axes)
     omega = number("spin", spin) * along + number("twist_rate", twist_rate) * up
-    h = _inertia(body, held) @ omega
+    h = inertia(body, held) @ omega
     # Momentum (0, h2, h3) of an upright body: turned about axis 1 until it lies along 2.
     front, left, head = in_sequence(h.tolist(), body.axes)
     tilt = -math.copysign(1.0, left) * math.atan2(head, math.hypot(front, left))
     size = math.copysign(float(np.linalg.norm(h)), h @ along)
     start = Takeoff(tilt=tilt, angular_momentum=(size * along).tolist())
-    return Maneuver.moves(body, _through([(0.0, held)]), start, _seconds(duration=duration))
+    return Maneuver.moves(body, through([(0.0, held)]), start, seconds(duration=duration))
 
 
 def hula(
@@ -324,122 +319,20 @@ def hula(
     >>> bool(abs(so.hula().fly().landing.twist) > 1.0)
     True
     """
-    body, end = load(model), _sides(model, finish)
-    bent = _sides(model, arms) | _both(body, {"hip_flexion": number("pike", pike)})
+    body, end = load(model), named(model, finish)
+    bent = named(model, arms) | both(body, {"hip_flexion": number("pike", pike)})
     lean = number("side", side)
-    swung = bent | _both(body, {"hip_flexion": 0.0})
+    swung = bent | both(body, {"hip_flexion": 0.0})
     swung |= {"left_hip_abduction": lean, "right_hip_abduction": -lean}
     times = np.cumsum(
-        [_seconds(begin=begin), _seconds(quarter=quarter), number("hold", hold),
-         _seconds(extend=extend)]
+        [seconds(begin=begin), seconds(quarter=quarter), number("hold", hold),
+         seconds(extend=extend)]
     ).tolist()  # fmt: skip
     if hold < 0:
         raise SomersaultError(f"hold {hold:g} s is negative; the hips cannot extend before")
     poses = [bent, swung, swung, end]
     row = list(zip(times, poses, strict=True))
-    moves = _through(row if hold > 0 else [row[0], *row[2:]])
+    moves = through(row if hold > 0 else [row[0], *row[2:]])
     return Maneuver.moves(
-        body, moves, Takeoff(spin=number("spin", spin)), _seconds(duration=duration)
+        body, moves, Takeoff(spin=number("spin", spin)), seconds(duration=duration)
     )
-
-
-def twist_time(maneuver: Maneuver, twists: float) -> float:
-    """When a maneuver has twisted so many times, either way, to rounding.
-
-    It is found by flying until there. Joints are held after their last keyframe.
-
-    Parameters
-    ----------
-    maneuver : Maneuver
-    twists : float
-        From takeoff, in whole turns.
-
-    Returns
-    -------
-    float
-        s.
-
-    Raises
-    ------
-    SomersaultError
-        Where the body does not twist so far.
-
-    Examples
-    --------
-    >>> import somersault as so
-    >>> 0.0 < so.flight.twist_time(so.torque_twist(), 0.5) < 1.0
-    True
-    """
-    target = 2 * math.pi * number("twists", twists)
-    longest = max(maneuver.duration, 1.0)
-    while True:
-        flown = maneuver.fly(duration=longest, accuracy=1e-12)
-        twist = np.abs(flown.dataset["twist"].values - maneuver.takeoff.twist)
-        if twist.max() >= target:
-            break
-        if longest >= _LONGEST:
-            raise SomersaultError(
-                f"this maneuver does not twist {twists:g} times in {longest:g} s; tilt it more"
-            )
-        longest *= 2
-    after = int(np.argmax(twist >= target))
-    if after == 0:
-        return 0.0
-    low, high = flown.times[after - 1], flown.times[after]
-    from scipy.optimize import brentq
-
-    def missing(time: float) -> float:
-        here = maneuver.fly(duration=time, accuracy=1e-12, samples=2).landing.twist
-        return abs(here - maneuver.takeoff.twist) - target
-
-    low = max(float(low), 1e-9)
-    return float(brentq(missing, low, float(high), xtol=_FINE, rtol=1e-14))
-
-
-def _through(stations: Sequence[tuple[float, Mapping[str, float]]]) -> dict[str, Any]:
-    """Keyframes of every joint through poses (rad by joint) at times (s), none to no purpose."""
-    found: dict[str, list[tuple[float, float]]] = {}
-    for name in stations[0][1]:
-        row = [(time, pose[name]) for time, pose in stations]
-        kept = [
-            (time, angle)
-            for k, (time, angle) in enumerate(row)
-            if any(row[n][1] != angle for n in (k - 1, k + 1) if 0 <= n < len(row))
-        ]
-        found[name] = kept or row[:1]
-    return found
-
-
-def _sides(model: str | Model, name: str) -> dict[str, float]:
-    """A named pose of every joint by its own name."""
-    pose = named_pose(model, name)
-    if "shoulder.1" in pose:
-        raise SomersaultError(
-            f"{load(model).name} has ball shoulders, which no maneuver moves; give it hinges"
-        )
-    return _both(load(model), pose)
-
-
-def _both(model: Model, pose: Mapping[str, float]) -> dict[str, float]:
-    """A pose with pairs that are named by what both sides share written out."""
-    there = {joint.name for joint in model.joints}
-    found = {}
-    for name, angle in by_name("legs", pose).items():
-        meant = [name] if name in there else [f"{side}_{name}" for side in _SIDES]
-        for joint in meant:
-            model.joint(joint)
-            found[joint] = number(f"joint {name}", angle)
-    return found
-
-
-def _inertia(model: Model, pose: Mapping[str, float]) -> Array:
-    """Of the whole body about its centre of mass in a pose, in the base's axes (3, 3)."""
-    return Equations(model).inertia(np.asarray(posed(model, pose)))
-
-
-def _seconds(**given: float) -> float:
-    """A duration; SomersaultError unless it is positive."""
-    ((name, value),) = given.items()
-    if number(name, value) <= 0:
-        raise SomersaultError(f"{name} {value:g} s is no duration; give a positive number")
-    return float(value)

@@ -22,6 +22,7 @@ from somersault._core.numbers import number, numbers
 from somersault.attitude import quaternion_from_matrix
 from somersault.dynamics import Equations
 from somersault.engine import STATUS, Integrator
+from somersault.flight._prop import Prop
 from somersault.flight._takeoff import Takeoff
 from somersault.flight.behaviours import JointTakeoff
 from somersault.history import summary
@@ -41,56 +42,6 @@ if TYPE_CHECKING:
 
 _MOST_SAMPLES = 1_000_000
 GRAVITY = (0.0, 0.0, -9.81)  # m/s², inertial axes; 3 is up
-
-
-@dataclass(frozen=True)
-class Prop:
-    """A prop that pushes a joint back where it has passed an angle, and never pulls.
-
-    Passed by c > 0 it gives `stiffness` c (1 + `damping` ċ): a load that is continuous when the
-    prop touches and when it lets go (Hunt and Crossley 1975, J. Appl. Mech. 42, 440).
-
-    Parameters
-    ----------
-    angle : float
-        rad.
-    side : {1, -1}
-        1 keeps the joint's coordinate at `angle` or above, −1 below.
-    stiffness : float
-        N m/rad.
-    damping : float
-        s/rad.
-
-    Raises
-    ------
-    SomersaultError
-        For numbers that do not make sense.
-
-    Examples
-    --------
-    >>> import somersault as so
-    >>> so.Prop(0.0, side=-1, stiffness=1e4).side
-    -1
-    """
-
-    angle: float
-    side: int = 1
-    stiffness: float = 1e4
-    damping: float = 0.0
-
-    def __post_init__(self) -> None:
-        number("a prop's angle", self.angle)
-        if not isinstance(self.side, int | float | np.number) or self.side not in (1, -1):
-            raise SomersaultError(f"a prop's side is 1 or -1, and is {self.side!r}")
-        if number("a prop's stiffness", self.stiffness) <= 0:
-            raise SomersaultError(f"a prop's stiffness must be positive, and is {self.stiffness:g}")
-        if number("a prop's damping", self.damping) < 0:
-            raise SomersaultError(f"a prop's damping is not negative, and is {self.damping:g}")
-
-    def torque(self, q: Any, u: Any) -> Any:
-        """What it gives at a coordinate and its rate, N m; symbols or arrays."""
-        passed = ca.fmax(self.side * (self.angle - q), 0)
-        return self.side * self.stiffness * passed * ca.fmax(1 - self.damping * self.side * u, 0)
 
 
 @dataclass(frozen=True, eq=False)

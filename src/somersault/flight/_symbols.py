@@ -11,6 +11,7 @@ import casadi as ca
 from somersault.attitude import in_sequence
 from somersault.dynamics import (
     composite_bodies,
+    constrained_dynamics,
     forward_dynamics,
     inverse_dynamics,
     link_tree,
@@ -147,17 +148,32 @@ class Symbols:
         """What acts at each joint speed; 0 where the joint is moved, whatever it takes."""
         result: list[Any] = []
         for slot in self.layout.slots:
-            free = slot.kind.in_state
-            here = self.here[slot.joint.name]
-            result += slot.kind.loads(here) if free else [0.0] * slot.joint.speeds
+            here, known = self.here[slot.joint.name], self.known[slot.joint.name]
+            moved = len(known.a) > 0
+            result += [0.0] * slot.joint.speeds if moved else slot.kind.loads(here.at(known))
+        return result
+
+    @cached_property
+    def _geared(self) -> dict[int, tuple[int, Any]]:
+        """For the place of a joint speed that follows one that moves freely: the leader's place,
+        and the factor between them."""
+        result: dict[int, tuple[int, Any]] = {}
+        for slot in self.layout.slots:
+            if isinstance(slot.kind, Coupled) and not self.known[slot.joint.name].a:
+                own, leader = (
+                    self.model.speed_slice(name).start
+                    for name in (slot.joint.name, slot.kind.leader)
+                )
+                result[own] = leader, self.here[slot.joint.name].numbers["factor"]
         return result
 
     @cached_property
     def accelerations(self) -> tuple[Vec, Vec, list[Any]]:
         """Of the base, of its centre of mass, and of all joint speeds."""
-        return forward_dynamics(
-            self.tree, self.position, self.omega, self.rate, self.torques, [0.0] * 3, self._driven
-        )
+        moving = (self.tree, self.position, self.omega, self.rate, self.torques, [0.0] * 3)
+        if self._geared:
+            return constrained_dynamics(*moving, self._driven, self._geared)
+        return forward_dynamics(*moving, self._driven)
 
     @cached_property
     def slope(self) -> Any:

@@ -112,8 +112,10 @@ def as_moves(path: Path) -> tuple[Array, Array] | None:
     """Times (K,) and values (K,) of a path of smooth moves, None for one that is something else."""
     values = path.coefficients[..., 1:, 0]
     rebuilt = moves(path.knots, values).coefficients
-    size = np.abs(path.coefficients).max(initial=1e-300)
-    alike = np.all(np.abs(rebuilt - path.coefficients) <= _ROUNDING * size)
+    spans = np.pad(np.diff(path.knots), 1)[:, None] ** np.arange(DEGREE + 1)  # 0⁰ is 1
+    size = np.abs(path.coefficients[..., 0]).max(initial=1e-300)
+    alike = np.all(np.abs(rebuilt - path.coefficients) * spans <= _ROUNDING * size)
+    alike &= not np.any(path.coefficients[[0, -1], 1:])  # held before and after
     return (path.knots, values) if alike else None
 
 

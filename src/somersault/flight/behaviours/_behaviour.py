@@ -93,6 +93,10 @@ class Here:
     tape: Any = 0.0
     leader: Known | None = None
 
+    def at(self, known: Known) -> Here:
+        """The same where a joint that is no part of the state is."""
+        return replace(self, q=known.q, u=known.u)
+
     def following(self, leader: Known | None) -> Here:
         """The same with the joint that it follows."""
         return replace(self, leader=leader)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
+from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.dynamics import spring_torques
 from somersault.flight.behaviours import _declared
@@ -18,25 +19,34 @@ class Coupled(JointTakeoff, motion="coupled"):
     """A joint whose coordinate is `factor` times that of the joint `leader`, plus `offset`.
 
     URDF calls it mimic. Where nothing is given it is as the model gears it. Where the leader moves
-    freely, the joint's own spring and damper, as the model has them, act through the gears.
+    freely, the joint's own spring and damper act on it through the gears; they are the model's
+    unless `stiffness`, `rest` and `damping` are given.
     """
 
     leader: str = field(default="", kw_only=True, metadata={"structure": True})
     factor: float = _declared.quantity("1", default=1.0)
     offset: float = _declared.quantity("rad", "m", default=0.0)
+    stiffness: float | None = _declared.stiffness()
+    rest: float | None = _declared.rest()
+    damping: float | None = _declared.damping()
 
     def settled(self, joint: Joint) -> JointTakeoff:
         plan = self._checked(joint)
         if not isinstance(plan.leader, str):
             raise SomersaultError(f"joint {joint.name}: leader must be a joint's name")
-        if plan.leader:
-            return plan
-        if joint.follows is None:
-            raise SomersaultError(
-                f"joint {joint.name} is coupled to no joint; name its leader, as the model has none"
-            )
-        geared = joint.follows
-        return Coupled(leader=geared.leader, factor=geared.factor, offset=geared.offset)
+        if not plan.leader:
+            if joint.follows is None:
+                raise SomersaultError(
+                    f"joint {joint.name} is coupled to no joint; name its leader, as the model has "
+                    "none"
+                )
+            geared = joint.follows
+            plan = replace(plan, leader=geared.leader, factor=geared.factor, offset=geared.offset)
+        passive = {
+            name: getattr(joint if getattr(plan, name) is None else plan, name)
+            for name in ("stiffness", "rest", "damping")
+        }
+        return replace(plan, **passive)
 
     def mirrored(self, model: Model, name: str, factor: float, offset: float) -> Coupled:
         plan = self.settled(model.joint(name))
@@ -50,10 +60,11 @@ class Coupled(JointTakeoff, motion="coupled"):
         leader, by, about = images[plan.leader]  # leader's image = about + by · leader
         turned = factor * plan.factor / by
         shift = offset + factor * plan.offset - turned * about
-        return Coupled(leader=leader, factor=turned, offset=shift)
+        rest = offset + factor * (plan.rest or 0.0)
+        return replace(plan, leader=leader, factor=turned, offset=shift, rest=rest)
 
     def parameters(self, joint: Joint) -> tuple[str, ...]:
-        return ("factor", "offset")
+        return ("factor", "offset", "stiffness", "rest", "damping")
 
     def place(self, here: Here) -> Known:
         by, about = here.numbers["factor"], here.numbers["offset"]
@@ -62,8 +73,16 @@ class Coupled(JointTakeoff, motion="coupled"):
         return Known([by * leader.q[0] + about], [by * leader.u[0]], [by * a for a in leader.a])
 
     def loads(self, here: Here) -> list[Any]:
-        joint = here.joint
-        return spring_torques(joint, here.q, here.u, joint.stiffness, joint.rest, joint.damping)
+        n = here.numbers
+        passive = (n["stiffness"], n["rest"], n["damping"])
+        return spring_torques(here.joint, here.q, here.u, *passive)
+
+    @property
+    def conservative(self) -> bool:
+        return not self.damping
+
+    def energy(self, joint: Joint, q: Array) -> Array:
+        return 0.5 * (self.stiffness or 0.0) * (q[..., 0] - (self.rest or 0.0)) ** 2
 
 
 def check_coupled(model: Model, plans: tuple[JointPlan, ...]) -> None:
