@@ -36,11 +36,11 @@ class Target:
 
     Parameters
     ----------
-    name
+    name : tuple
         Which number.
-    factor, offset
+    factor, offset : float
         A mirrored joint has a factor of −1, for one.
-    unit
+    unit : str, optional
         Of the number; None where it only goes along with another, as the moments of inertia of a
         body go along with its mass.
     """
@@ -57,13 +57,13 @@ class Variable:
 
     Parameters
     ----------
-    unit
+    unit : str
         "rad", "kg m2/s" …; "1" for what has none.
-    dtype
+    dtype : {"f8", "i4", "u1"}
         "f8" for numbers, "i4" for counts, "u1" for codes.
-    over_time
+    over_time : bool
         Whether it is an array over the simulation's `times`.
-    words
+    words : str
         What it is, in words.
     """
 
@@ -84,12 +84,12 @@ class Endings:
 
     Parameters
     ----------
-    words
+    words : tuple of str
         All endings, at most 255 of them.
-    failed
+    failed : tuple of str
         Those that leave no result: such runs are counted, and never averaged over. A robot that
         falls has not failed in this sense.
-    unsound
+    unsound : str
         The one, among `failed`, of a run that cannot begin with the numbers it is given.
     """
 

@@ -38,8 +38,12 @@ def failed(ended: xr.DataArray) -> xr.DataArray:
 
     Parameters
     ----------
-    ended
+    ended : xarray.DataArray
         `dataset["ended"]` of an ensemble, or a part of it. Runs still to come have not failed.
+
+    Returns
+    -------
+    xarray.DataArray of bool
 
     Examples
     --------
@@ -57,15 +61,26 @@ def ended_by(ended: xr.DataArray, ending: str) -> xr.DataArray:
 
     Parameters
     ----------
-    ended
+    ended : xarray.DataArray
         `dataset["ended"]` of an ensemble, or a part of it.
-    ending
+    ending : str
         One of the words in its attribute `flag_meanings`, with spaces.
+
+    Returns
+    -------
+    xarray.DataArray of bool
 
     Raises
     ------
     SomersaultError
         For a word that is none of them.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> found = so.ensemble("furrer", so.Takeoff(spin=8.64), 1.0)
+    >>> bool(so.ensembles.ended_by(found.dataset["ended"], "duration").all())
+    True
     """
     words = ending_words(ended)
     return ended == words.index(one_of("ended", ending, words))

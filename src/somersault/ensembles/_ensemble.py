@@ -48,8 +48,12 @@ class Ensemble:
 
         Parameters
         ----------
-        path
+        path : str or Path
             A Zarr store, whose values are read when they are used, or a NetCDF file.
+
+        Returns
+        -------
+        Ensemble
 
         Raises
         ------
@@ -76,15 +80,17 @@ class Ensemble:
 
         Parameters
         ----------
-        good
-            True or false for each flight, like `found.dataset.tilt < 0.1`. One that failed was not
+        good : xarray.DataArray of bool, optional
+            For each flight, like `found.dataset.tilt < 0.1`. One that failed was not
             good.
-        tolerance
+        tolerance : float, optional
             The flights whose landing error is at most so much, rad.
-        ended
+        ended : str, optional
             The flights that ended so: "duration", "event", "too many steps" …
-        over, confidence
-            As for `ensembles.fraction`.
+        over : str or sequence of str
+            The dimensions over which flights are counted.
+        confidence : float
+            That the interval holds the true share, between 0 and 1.
 
         Returns
         -------
@@ -171,34 +177,47 @@ def ensemble(
 
     Parameters
     ----------
-    model
+    model : str, Model, Maneuver or Simulation
         A model, whose `takeoff` and `duration` (s; 1 by default) are given as for
         `somersault.fly`; a maneuver, which has its own; or anything else that can be run many
         times, a `somersault.simulation.Simulation`.
-    vary
+    takeoff : Takeoff, optional
+    duration : float, optional
+        s.
+    vary : mapping of str to Vary
         What differs, by name. Grids span dimensions of their own; all that is drawn or listed runs
         along the dimension `sample`.
-    against
+    against : Flight or mapping of str to float, optional
         The flight, or angles by name (rad), that landings are measured against: "landing_error" is
         then reported.
-    size, seed, sequence
-        How many samples are drawn, from which seed, as a "random", "sobol", "halton" or "saltelli"
-        sequence.
-    report
+    size : int, optional
+        How many samples are drawn.
+    seed : int
+        From which they are drawn.
+    sequence : {"random", "sobol", "halton", "saltelli"}
+        How they are drawn.
+    report : Report or sequence of str, optional
         A `Report`, or the names of its quantities.
-    accuracy, until, steps
-        As for `somersault.fly`; by default those of the maneuver if it has any, else 1e-7 rad, no
-        event, and 100,000 steps, after which a flight that is not done has failed.
-    out
+    accuracy : float, optional
+        Of the attitude, rad; by default the maneuver's, or 1e-7.
+    until : {"quarter twist"}, optional
+        The event that ends a flight; by default the maneuver's, or none.
+    steps : int, optional
+        A flight that is not done after so many steps of the integration has failed; by default the
+        maneuver's, or 100,000.
+    out : str or Path, optional
         A path that ends in .nc gets the dataset as NetCDF in the end. Any other is a Zarr store,
         which fills chunk by chunk, and with which the same call goes on. Without it the dataset
         stays in memory.
-    chunk
+    chunk : int, optional
         Flights in a chunk of the store.
-    threads, workers, scheduler
-        Chunks are run on so many threads (one for each core by default), on so many processes of
-        dask.distributed, or by the workers of the dask scheduler at an address.
-    progress
+    threads : int, optional
+        On which chunks are run; one for each core by default.
+    workers : int, optional
+        Processes of dask.distributed that run them instead.
+    scheduler : str, optional
+        Address of the dask scheduler whose workers run them instead.
+    progress : bool
         Whether a bar shows how far it is.
 
     Returns
@@ -299,10 +318,14 @@ def carried_out(
 
     Parameters
     ----------
-    plan
+    plan : Plan
         Made by `ensembles.plan`.
     out, chunk, threads, workers, scheduler, progress
         As for `ensemble`.
+
+    Returns
+    -------
+    Ensemble
 
     Raises
     ------

@@ -166,10 +166,17 @@ def plan(
 
     Parameters
     ----------
-    simulation
-        What is run: `flight.flights`, for one.
-    vary, size, seed, sequence
+    simulation : Simulation
+        What is run: `flight.flights(…)`, for one.
+    vary : mapping of str to Vary
+    size : int, optional
+    seed : int
+    sequence : {"random", "sobol", "halton", "saltelli"}
         As for `ensemble`.
+
+    Returns
+    -------
+    Plan
 
     Raises
     ------

@@ -37,13 +37,13 @@ def sensitivity(data: xr.Dataset, name: str, confidence: float = 0.95, seed: int
 
     Parameters
     ----------
-    data
-        The dataset of an ensemble.
-    name
+    data : xarray.Dataset
+        Of an ensemble.
+    name : str
         The reported quantity.
-    confidence
+    confidence : float
         Of the half-widths, between 0 and 1.
-    seed
+    seed : int
         Of the resampling that the half-widths are from.
 
     Returns
@@ -58,6 +58,18 @@ def sensitivity(data: xr.Dataset, name: str, confidence: float = 0.95, seed: int
     ------
     SomersaultError
         Where nothing is drawn, or there are too few samples.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> vary = {
+    ...     "leant": so.Vary(adds_to="takeoff.tilt", normal=[0.0, 0.02]),
+    ...     "turned": so.Vary(adds_to="takeoff.somersault", normal=[0.0, 0.02]),
+    ... }
+    >>> found = so.ensemble("furrer", so.Takeoff(spin=8.64), 0.2, vary, size=128, report=["tilt"])
+    >>> ranking = so.ensembles.sensitivity(found.dataset, "tilt")
+    >>> str(ranking["input"].values[0])
+    'leant'
     """
     check_confidence(confidence)
     seed = whole_number("seed", seed, 0, 2**32 - 1)

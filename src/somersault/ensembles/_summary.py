@@ -32,10 +32,14 @@ def within(data: xr.Dataset, tolerance: float | None) -> xr.DataArray:
 
     Parameters
     ----------
-    data
-        The dataset of an ensemble that reports "landing_error".
-    tolerance
-        In rad.
+    data : xarray.Dataset
+        Of an ensemble that reports "landing_error".
+    tolerance : float
+        rad.
+
+    Returns
+    -------
+    xarray.DataArray of bool
 
     Raises
     ------
@@ -70,14 +74,14 @@ def fraction(
 
     Parameters
     ----------
-    good
-        True or false for each flight.
-    ended
+    good : xarray.DataArray of bool
+        For each flight.
+    ended : xarray.DataArray, optional
         `dataset["ended"]` of the ensemble: a flight that failed was not good, and one that is
         still to come does not count. Without it all count.
-    over
-        The dimensions over which flights are counted; by default those of the samples.
-    confidence
+    over : str or sequence of str
+        The dimensions over which flights are counted; by default that of the samples.
+    confidence : float
         That the interval holds the true share, between 0 and 1.
 
     Returns
@@ -152,14 +156,14 @@ def quantiles(
 
     Parameters
     ----------
-    data
-        The dataset of an ensemble.
-    name
+    data : xarray.Dataset
+        Of an ensemble.
+    name : str
         One of its variables.
-    q
+    q : sequence of float
         From 0 to 1.
-    over
-        The dimensions over which flights are gathered; by default those of the samples.
+    over : str or sequence of str
+        The dimensions over which flights are gathered; by default that of the samples.
 
     Returns
     -------
@@ -171,6 +175,14 @@ def quantiles(
     ------
     SomersaultError
         For what does not fit.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> vary = {"tilt_at_takeoff": so.Vary("takeoff.tilt", uniform=[-0.1, 0.1])}
+    >>> found = so.ensemble("furrer", so.Takeoff(spin=8.64), 0.2, vary, size=50, report=["tilt"])
+    >>> so.ensembles.quantiles(found.dataset, "tilt", [0.5])["tilt"].dims
+    ('quantile',)
     """
     import xarray as xr
 

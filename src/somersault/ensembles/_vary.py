@@ -56,21 +56,42 @@ DISTRIBUTIONS: dict[str, tuple[str, Any]] = {
 
 @dataclass(frozen=True)
 class Vary:
-    """One varied quantity: which numbers of the takeoff it is, and the values it takes.
+    """One varied quantity: which numbers it is, and the values it takes.
 
-    It `sets` numbers, or is added to them (`adds_to`); more than one are moved together. Numbers
-    are named "takeoff.tilt", "takeoff.angular_momentum.2", "joints.NAME.angle" (rate, stiffness,
-    damping, rest, pretension; a pair by its common name), "joints.NAME.times" or
-    "joints.NAME.times.2" (angles likewise; all of them, or one, from 1), "bodies.NAME.mass" (its
-    moments of inertia along with it), "bodies.NAME.com.1", "bodies.NAME.position.3". What they
-    are given is `scale` times this quantity. Its `unit` is theirs if none is given, where they
-    have the same and `scale` is 1.
+    Its values are a grid (`values`), along a dimension of its own, or run along the dimension
+    `sample`, with the same draws at every point of the grids: `samples` one by one, or one of the
+    distributions.
 
-    `values` are a grid: every one goes with every other quantity's, along a dimension of its
-    own. All else runs along the dimension `sample`, with the same draws at every point of
-    the grids: `samples` one by one, or a distribution: `uniform` [low, high], `normal` [mean,
-    standard deviation], `truncated_normal` [mean, standard deviation, low, high], `triangular`
-    [low, most likely, high], `lognormal` [median, standard deviation of the logarithm].
+    Parameters
+    ----------
+    sets, adds_to : str or sequence of str
+        The numbers that it sets, or is added to; several are moved together. Of flights they are
+        named "takeoff.tilt", "takeoff.angular_momentum.2", "joints.NAME.angle" (or what else the
+        joint's behaviour has: rate, stiffness, damping, rest, pretension …; a pair by its common
+        name), "joints.NAME.times" for all of them or "joints.NAME.times.2" for one (from 1),
+        "bodies.NAME.mass" (moments of inertia go along with it), "bodies.NAME.com.1",
+        "bodies.NAME.position.3".
+    values : sequence of float or mapping
+        A grid: a list, or {"from": …, "to": …, "count": …}.
+    samples : sequence of float
+        One for each sample.
+    uniform : (low, high)
+    normal : (mean, standard deviation)
+    truncated_normal : (mean, standard deviation, low, high)
+    triangular : (low, most likely, high)
+    lognormal : (median, standard deviation of the logarithm)
+    scale : float
+        The numbers are set to, or moved by, `scale` times the quantity.
+    unit : str
+        Of the quantity; by default that of the numbers, where they have the same and `scale` is 1.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> so.Vary(adds_to="takeoff.tilt", normal=[0.0, 0.02]).distribution
+    'normal'
+    >>> so.Vary(sets="joints.shoulder.angle", values={"from": 0.0, "to": 2.0, "count": 3}).grid
+    array([0., 1., 2.])
     """
 
     sets: str | Sequence[str] = ()

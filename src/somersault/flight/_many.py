@@ -148,17 +148,25 @@ def flights(
 
     Parameters
     ----------
-    model, takeoff, duration, until
-        As for `somersault.fly`.
-    report
+    model : str or Model
+    takeoff : Takeoff, optional
+    duration : float
+        s.
+    report : Report or sequence of str
         A `Report`, or the names of its quantities.
-    against
+    against : Flight or mapping of str to float, optional
         What "landing_error" is measured against: the landing of a flight, or angles by name (rad;
         somersault, tilt, twist and joint coordinates).
-    accuracy
+    until : {"quarter twist"}, optional
+        The event that ends a flight.
+    accuracy : float
         Of the attitude, rad.
-    steps
+    steps : int
         A flight that is not done after so many steps of the integration has failed.
+
+    Returns
+    -------
+    Flights
 
     Raises
     ------

@@ -30,17 +30,17 @@ class Report:
 
     Parameters
     ----------
-    quantities
+    quantities : tuple of str
         At the end: "somersault", "tilt", "twist" (rad, unwrapped) and their rates ("tilt_rate" …),
         "angular_velocity_1" (2, 3; body axes), joint coordinates by name and their rates
         ("NAME_rate"); "somersaults" and "twists", turns since takeoff; and "landing_error", the
         error against the landing that is aimed at.
-    extremes
+    extremes : tuple of str
         Of which of them (turns and landing error excepted) the least and the greatest on the way
         are reported.
-    history
+    history : tuple of str
         Which of them are reported at `samples` evenly spaced times.
-    samples
+    samples : int
         How many times a history has, 2 at least.
 
     Examples
@@ -70,8 +70,7 @@ def landing_target(flight: Flight) -> dict[str, float]:
 
     Parameters
     ----------
-    flight
-        The flight.
+    flight : Flight
 
     Returns
     -------
@@ -104,10 +103,20 @@ def landing_error(target: Mapping[str, float], landed: Mapping[str, Array | floa
 
     Parameters
     ----------
-    target
+    target : mapping of str to float
         Somersault, tilt, twist and joint coordinates by name, as `landing_target` gives them.
-    landed
-        The same of one landing, or arrays of many.
+    landed : mapping of str to float or array, (N,)
+        The same of one landing, or of N.
+
+    Returns
+    -------
+    array, () or (N,)
+
+    Examples
+    --------
+    >>> from somersault.flight import landing_error
+    >>> float(landing_error({"tilt": 0.0, "twist": 3.0}, {"tilt": 0.3, "twist": 3.4}))
+    0.25
     """
 
     def squared(name: str) -> Array:
