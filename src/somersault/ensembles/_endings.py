@@ -48,7 +48,7 @@ def failed(ended: xr.DataArray) -> xr.DataArray:
     Examples
     --------
     >>> import somersault as so
-    >>> vary = {"tilt": so.Vary(sets="takeoff.tilt", values=[0.0, 0.1])}
+    >>> vary = {"leant": so.Vary(sets="takeoff.tilt", values=[0.0, 0.1])}
     >>> found = so.ensemble("furrer", so.Takeoff(spin=8.64), 1.0, vary)
     >>> so.ensembles.failed(found.dataset["ended"]).values
     array([False, False])

@@ -105,7 +105,7 @@ class Ensemble:
         Examples
         --------
         >>> import somersault as so
-        >>> vary = {"tilt": so.Vary(adds_to="takeoff.tilt", normal=[0.0, 0.05])}
+        >>> vary = {"leant": so.Vary(adds_to="takeoff.tilt", normal=[0.0, 0.05])}
         >>> found = so.ensemble("furrer", so.Takeoff(spin=8.64), 1.0, vary, size=20)
         >>> float(found.fraction(ended="duration")["fraction"])
         1.0
@@ -128,22 +128,72 @@ class Ensemble:
     def quantiles(
         self, name: str, q: Sequence[float] = (0.05, 0.5, 0.95), **options: Any
     ) -> xr.Dataset:
-        """Quantiles of a reported quantity over the flights that did not fail: see
-        `ensembles.quantiles`."""
+        """Quantiles of a reported quantity, over the flights that did not fail.
+
+        Parameters
+        ----------
+        name : str
+            One of the variables.
+        q : sequence of float
+            From 0 to 1.
+        **options
+            `over`, as for `ensembles.quantiles`.
+
+        Returns
+        -------
+        xarray.Dataset
+            As `ensembles.quantiles` gives it.
+
+        Raises
+        ------
+        SomersaultError
+            For what does not fit.
+        """
         from somersault.ensembles._summary import quantiles
 
         return quantiles(self.dataset, name, q, **options)
 
     def sensitivity(self, name: str, **options: Any) -> xr.Dataset:
-        """How much of the variance of a reported quantity comes from each drawn one: see
-        `ensembles.sensitivity`."""
+        """How much of the scatter of a reported quantity comes from each drawn one.
+
+        Parameters
+        ----------
+        name : str
+            One of the variables.
+        **options
+            `confidence` and `seed`, as for `ensembles.sensitivity`.
+
+        Returns
+        -------
+        xarray.Dataset
+            As `ensembles.sensitivity` gives it.
+
+        Raises
+        ------
+        SomersaultError
+            Where nothing is drawn, or there are too few samples.
+        """
         from somersault.ensembles._sensitivity import sensitivity
 
         return sensitivity(self.dataset, name, **options)
 
     def plot(self, name: str | None = None) -> Figure:
-        """A picture of a reported quantity: a map over two grids, a band over one, or a
-        histogram."""
+        """A picture of a reported quantity: a map over two grids, a band over one, or a histogram.
+
+        Parameters
+        ----------
+        name : str, optional
+            One of the variables; by default the landing error, or the first.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        SomersaultError
+            For more than two grids, or where all flights failed.
+        """
         from somersault.ensembles._plot import plot
 
         return plot(self.dataset, name)

@@ -115,7 +115,7 @@ def landing_error(target: Mapping[str, float], landed: Mapping[str, Array | floa
     Examples
     --------
     >>> from somersault.flight import landing_error
-    >>> float(landing_error({"tilt": 0.0, "twist": 3.0}, {"tilt": 0.3, "twist": 3.4}))
+    >>> float(landing_error({"tilt": 0.0, "twist": 3.0}, {"tilt": 0.0, "twist": 3.5}))
     0.25
     """
 
