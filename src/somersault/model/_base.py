@@ -154,6 +154,16 @@ def _in_the_air(bodies: Sequence[Body], base: int) -> tuple[Body, ...]:
     return (free, *rest)
 
 
+def root(bodies: Sequence[Body], base: str) -> tuple[Body, ...]:
+    """The bodies from the ground to the one called `base`, each the parent of the next."""
+    chain: list[Body] = []
+    at = next(index for index, body in enumerate(bodies) if body.name == base)
+    while at != GROUND:
+        chain.insert(0, bodies[at])
+        at = bodies[at].parent
+    return tuple(replace(body, parent=number - 1) for number, body in enumerate(chain))
+
+
 def _let_go(name: str, bodies: list[Body]) -> Rooted:
     """Free what is fixed to the ground; where that weighs nothing, the body that stands on it."""
     fixed = _fixed(bodies, free=False)

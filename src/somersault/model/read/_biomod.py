@@ -3,23 +3,25 @@
 Meanings follow biorbd's sources (pyomeca/biorbd, src/ModelReader.cpp, src/RigidBody/Segment.cpp).
 The reader is ours because biobuddy 0.3.2 refuses `variables`, arithmetic, actuators, patches and
 the usual `root_actuated` header, takes the default of `rtinmatrix` wrongly in version 3, and
-needs two seconds and pandas to import; biorbd itself skips unknown words in silence and insists
-on opening the mesh files.
+needs two seconds and pandas to import; biorbd itself insists on opening the mesh files.
 """
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from somersault._core.errors import SomersaultError
-from somersault.model._base import rooted
+from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault.model._base import root, rooted
 from somersault.model._bodies import GROUND, Body, Joint
-from somersault.model._model import Model
+from somersault.model._model import FileCoordinates, Model
 from somersault.model._weld import merge_welded
-from somersault.model.read._biomod_text import AXES, File, Segment
+from somersault.model.read._biomod_blocks import PassiveTorque
+from somersault.model.read._biomod_segment import AXES, GROUND_PARENT, Segment
+from somersault.model.read._biomod_text import File
 from somersault.model.read._biomod_words import Words, read_text, shown
 
 
@@ -29,14 +31,13 @@ def read_biomod(path: Path) -> Model:
     Segments without degrees of freedom are welded to their parents. A root that can move in all
     six ways becomes the free base, in its own axes; any other root stays on joints to the
     ground. Joints are named as biorbd names degrees of freedom (`RightUpperArm_RotY`), a
-    quaternion joint `<segment>_Quat`. Gravity, meshes, markers, contacts and actuators are
-    ignored, and said to be. Raises SomersaultError, with the line, for what cannot be read or
-    cannot be flown.
+    quaternion joint `<segment>_Quat`. What is left out or read otherwise is said in warnings.
+    Raises SomersaultError, with the line, for what cannot be read or cannot be flown.
     """
     file = File(Words(path.name, read_text(path)))
     file.read()
     segments = list(file.segments.values())
-    bodies = _bodies(segments)
+    bodies = _bodies(file, segments)
     _refuse_mirrors(path.name, merge_welded(bodies, free=False))
     on = rooted(path.name, bodies, free=False)
     if not on.bodies:
@@ -44,29 +45,83 @@ def read_biomod(path: Path) -> Model:
             f"{path.name}: no segment has translations or rotations, so nothing can fly; give "
             "the root segment translations xyz and rotations xyz"
         )
+    held = root(bodies, on.bodies[0].name) if on.free else ()
+    if on.free:
+        _refuse_lost(path.name, segments, bodies, held[-1])
+    moving = _sprung(file, on.bodies)
+    for kind, number in file.acting.items():
+        file.strange.add("acting in the file, but left out of flights", _counted(kind, number))
+    for sentence in file.strange.sentences():
+        warnings.warn(f"{path.name}: {sentence}", SomersaultWarning, stacklevel=4)
     return Model(
         name=path.stem,
         free=on.free,
-        bodies=on.bodies,
+        bodies=moving,
         ignored=_ignored(file, segments, on.let_go),
+        file_coordinates=FileCoordinates(held),
     )
 
 
-def _bodies(segments: list[Segment]) -> list[Body]:
+def _bodies(file: File, segments: list[Segment]) -> list[Body]:
     numbers = {segment.name: number for number, segment in enumerate(segments)}
-    return [
-        Body(
-            name=segment.name,
-            parent=numbers.get(segment.parent, GROUND),
-            mass=segment.mass,
-            com=segment.com,
-            inertia=segment.inertia,
-            position=segment.position,
-            rotation=segment.rotation,
-            joints=_joints(segment),
+    heavy: set[str] = set()  # what has mass, or carries it
+    for segment in reversed(segments):
+        if segment.mass or np.any(segment.inertia) or segment.name in heavy:
+            heavy |= {segment.name, segment.parent}
+    bodies = []
+    for segment in segments:
+        joints = _joints(segment)
+        if joints and segment.name not in heavy:
+            names = ", ".join(joint.name for joint in joints)
+            file.strange.add("joints that move no mass, and so left out", names)
+            joints = ()
+        bodies.append(
+            Body(
+                name=segment.name,
+                parent=numbers.get(segment.parent, GROUND),
+                mass=segment.mass,
+                com=segment.com,
+                inertia=segment.inertia,
+                position=segment.position,
+                rotation=segment.rotation,
+                joints=joints,
+            )
         )
-        for segment in segments
-    ]
+    return bodies
+
+
+def _refuse_lost(file: str, segments: list[Segment], bodies: list[Body], base: Body) -> None:
+    """Refuse a segment below the base in the file that lost its parent: it would stand on the
+    ground, apart from the body in the air."""
+    free = next(number for number, body in enumerate(bodies) if body.name == base.name)
+    for segment in segments[free + 1 :]:
+        if segment.parent == GROUND_PARENT and not segment.hung and segment.mass:
+            raise SomersaultError(
+                f"{file}: segment {shown(segment.name)} names no parent, and so stands on the "
+                f"ground with its {segment.mass:g} kg; name its parent, or write parent root if "
+                "that is meant"
+            )
+
+
+def _sprung(file: File, bodies: tuple[Body, ...]) -> tuple[Body, ...]:
+    """The bodies with the passive torques on their joints that are springs, τ = T0 + slope q."""
+    slopes: dict[str, list[PassiveTorque]] = {}
+    for torque in file.torques:
+        if torque.slope is not None and torque.slope < 0:
+            slopes.setdefault(torque.joint, []).append(torque)
+        elif torque.slope != 0 or torque.constant != 0:
+            file.acting["passive torque"] += 1
+    joints = {joint.name: joint for body in bodies for joint in body.joints}
+    for name, torques in slopes.items():
+        if name not in joints:
+            file.acting["passive torque"] += len(torques)
+            continue
+        stiffness = -sum(torque.slope or 0.0 for torque in torques)
+        rest = sum(torque.constant or 0.0 for torque in torques) / stiffness
+        joints[name] = replace(joints[name], stiffness=stiffness, rest=rest)
+    return tuple(
+        replace(body, joints=tuple(joints[joint.name] for joint in body.joints)) for body in bodies
+    )
 
 
 def _joints(segment: Segment) -> tuple[Joint, ...]:
@@ -107,16 +162,18 @@ def _refuse_mirrors(file: str, bodies: tuple[Body, ...]) -> None:
 
 def _ignored(file: File, segments: list[Segment], root: tuple[Joint, ...]) -> tuple[str, ...]:
     """What the file held that has no part in flight, in words; the joints of a free root too."""
-    said = [
-        kind if n == 0 else f"{n} {kind}" + ("s" if n > 1 else "")
-        for kind, n in file.ignored.items()
-    ]
-    moving = {"root": False}
+    said = [_counted(kind, number) for kind, number in file.ignored.items()]
+    moving = {GROUND_PARENT: False}
     for segment in segments:
         free = bool(segment.translations or segment.rotations)
         moving[segment.name] = free or moving[segment.parent]
-    fixed = [name for name, moves in moving.items() if not moves and name != "root"]
+    fixed = [name for name, moves in moving.items() if not moves and name != GROUND_PARENT]
     said += [f"segment {name}, fixed to the ground" for name in fixed]
     if any(joint.damping for joint in root):
         said.append("the dampings of the root")  # nothing damps a fall
     return tuple(said)
+
+
+def _counted(kind: str, number: int) -> str:
+    """How many there are of a kind; 0 where that does not matter."""
+    return kind if number == 0 else f"{number} {kind}" + ("s" if number > 1 else "")

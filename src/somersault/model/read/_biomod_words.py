@@ -13,6 +13,8 @@ import re
 from pathlib import Path
 
 from somersault._core.errors import SomersaultError
+from somersault._core.files import read_bytes
+from somersault.model._strange import Strange
 
 LARGEST_FILE = 50_000_000  # bytes; the largest athlete models are some 10 MB, all mesh points
 _LARGEST_NUMBER = 1e15  # beyond any mass, length or inertia; keeps their products finite
@@ -27,8 +29,7 @@ _NAME = re.compile(r"\$\w+")
 def read_text(path: Path) -> str:
     """The text of the file; SomersaultError if it cannot be one."""
     try:
-        with path.open("rb") as file:
-            data = file.read(LARGEST_FILE + 1)
+        data = read_bytes(path, LARGEST_FILE + 1)
     except (OSError, ValueError) as error:  # ValueError: a null character in the path
         reason = getattr(error, "strerror", None) or str(error)
         raise SomersaultError(
@@ -53,6 +54,7 @@ class Words:
 
     def __init__(self, file: str, text: str) -> None:
         self.file = file
+        self.strange = Strange()
         self.line = 1
         self.starts_line = True
         self.variables: dict[str, float] = {}
@@ -84,9 +86,13 @@ class Words:
 
     def number(self, what: str) -> float:
         """The next word as a number, its arithmetic done."""
-        word = self.word(what)
+        return self.value(self.word(what), what)
+
+    def value(self, word: str, what: str) -> float:
+        """A word as a number, its arithmetic done."""
         try:
-            value = _Sum(word, self.variables).value()
+            reckoned = _Sum(word, self.variables)
+            value = reckoned.value()
         except KeyError as error:
             raise self.error(
                 f"{shown(error.args[0])} is not a variable defined above; define it in a variables "
@@ -98,6 +104,11 @@ class Words:
             ) from None
         if not math.isfinite(value) or abs(value) > _LARGEST_NUMBER:
             raise self.error(f"{shown(word)} is too large for {what}; give a finite number")
+        if reckoned.dropped:
+            self.strange.add(
+                "numbers with pi right behind them, which biorbd drops, as we do; write 3*pi",
+                self.at(word[:40]),
+            )
         return value
 
     def numbers(self, count: int, what: str) -> list[float]:
@@ -113,6 +124,10 @@ class Words:
         if name in self.variables:
             raise self.error(f"the variable {shown(name)} is defined twice; remove one of them")
         self.variables[name] = self.number(f"the variable {shown(name)}")
+
+    def at(self, what: str) -> str:
+        """Something of the file and the line on which it stands."""
+        return f"{what} (line {self.line})"
 
     def error(self, what: str, line: int | None = None) -> SomersaultError:
         """The error to raise for `what`, on the line of the last word unless another is given."""
@@ -135,6 +150,7 @@ class _Sum:
             raise ValueError("something between the parts")
         self._parts.reverse()
         self._variables = variables
+        self.dropped = False  # a pi that follows a number, as biorbd drops it
 
     def value(self) -> float:
         value = self._sum()
@@ -177,4 +193,9 @@ class _Sum:
         part = self._parts.pop()
         if part.startswith("$"):
             return self._variables[part]
-        return math.pi if part.lower() == "pi" else float(part)
+        if part.lower() == "pi":
+            return math.pi
+        if self._parts and self._parts[-1].lower() == "pi":
+            self._parts.pop()
+            self.dropped = True
+        return float(part)

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from somersault._core.errors import SomersaultError, SomersaultWarning
-from somersault.model._base import Base, rooted
+from somersault.model._base import Base, root, rooted
 from somersault.model._bodies import GROUND, Body
 from somersault.model._model import FileCoordinates, Model
 from somersault.model._strange import Strange
@@ -65,19 +65,9 @@ def read_osim(path: Path, base: Base | None = None) -> Model:
     ignored = no_part_in_flight(model) + [f"body {name}, fixed to the ground" for name in on.still]
     if any(joint.stiffness or joint.damping for joint in on.let_go):
         ignored.append("the springs and dampers of the base")
-    root = _root(bodies, on.bodies[0].name) if on.free and on.let_go else ()
-    coordinates = FileCoordinates(root, gears.geared)
+    held = root(bodies, on.bodies[0].name) if on.free and on.let_go else ()
+    coordinates = FileCoordinates(held, gears.geared)
     return Model(path.stem, on.free, on.bodies, tuple(ignored), file_coordinates=coordinates)
-
-
-def _root(bodies: list[Body], base: str) -> tuple[Body, ...]:
-    """The bodies from the ground to the base, each the parent of the next."""
-    chain: list[Body] = []
-    at = next(n for n, body in enumerate(bodies) if body.name == base)
-    while at != GROUND:
-        chain.insert(0, bodies[at])
-        at = bodies[at].parent
-    return tuple(replace(body, parent=n - 1) for n, body in enumerate(chain))
 
 
 def _let_go(parts: dict[str, Part], links: list[Links]) -> list[Links]:
