@@ -360,12 +360,12 @@ def test_the_tape_is_the_nominal_bodys() -> None:
     """Varied masses meet the torques of the body as it is: a tape knows nothing of them."""
     model = so.load(GYMNAST)
     soft = so.compliant(GYMNAST, ELBOW, 20.0, pose=0.0)
-    batch = Batch(model, soft, 0.2, bodies=("mass.torso",))
+    batch = Batch(model, soft, 0.2, bodies=("bodies.torso.mass",))
     symbols = batch.system.symbols
     acting = ca.Function("acting", [symbols.x], [ca.vertcat(*symbols.torques)])
     at, torques = np.array([[0.05]]), []
     for mass in (model.bodies[1].mass, 20.0):
-        begun = batch.begun({**batch.values, ("mass.torso",): mass})
+        begun = batch.begun({**batch.values, ("bodies.torso.mass",): mass})
         p = begun.course.parameters(at)[:, 0]
         assert p[0, symbols.layout.changing] == mass
         torques.append(np.array(acting(np.concatenate([begun.rows, at, p], 1)[0])).ravel())

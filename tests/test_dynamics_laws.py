@@ -57,9 +57,10 @@ def single(mass: float, com: Any, inertia: Any, *joints: Joint) -> Model:
 def test_derivative_is_that_of_the_value(seed: int, argument: str) -> None:
     model = tree(seed, free=seed != 1).model
     joint = next(joint for joint in model.joints if joint.kind != "ball")
-    parts = [f"mass.{model.bodies[0].name}", f"com.{model.bodies[-1].name}.2"]
-    parts += [f"inertia.{model.bodies[1].name}.12", f"stiffness.{joint.name}", f"rest.{joint.name}"]
-    equations = Equations(model, [*parts, f"damping.{joint.name}"])
+    parts = [f"bodies.{model.bodies[0].name}.mass", f"bodies.{model.bodies[-1].name}.com.2"]
+    parts += [f"bodies.{model.bodies[1].name}.inertia.12"]
+    parts += [f"joints.{joint.name}.{kind}" for kind in ("stiffness", "rest", "damping")]
+    equations = Equations(model, parts)
     state = states(equations, seed)
     at = {name: getattr(state, name) for name in ("q", "v", "torques", "gravity")}
     at["parameters"] = equations.values + 0.3
@@ -114,11 +115,11 @@ def _tilted(model: Model) -> Model:
 def _open(model: Model) -> list[str]:
     names = []
     for body in model.bodies:
-        names += [f"mass.{body.name}", *(f"com.{body.name}.{k}" for k in (1, 2, 3))]
-        names += [f"inertia.{body.name}.{k}" for k in ("11", "12", "13", "22", "23", "33")]
+        names += [f"bodies.{body.name}.mass", *(f"bodies.{body.name}.com.{k}" for k in (1, 2, 3))]
+        names += [f"bodies.{body.name}.inertia.{k}" for k in ("11", "12", "13", "22", "23", "33")]
     for joint in model.joints:
-        names += [f"stiffness.{joint.name}", f"damping.{joint.name}"]
-        names += [] if joint.kind == "ball" else [f"rest.{joint.name}"]
+        names += [f"joints.{joint.name}.stiffness", f"joints.{joint.name}.damping"]
+        names += [] if joint.kind == "ball" else [f"joints.{joint.name}.rest"]
     return names
 
 
@@ -148,7 +149,8 @@ def test_open_parameters_give_what_a_model_with_those_numbers_gives(seed: int, f
 
 def test_a_parameter_alone_is_open() -> None:
     """A sweep of one number, a sample for each value."""
-    equations = Equations(load("furrer"), ["stiffness.left_shoulder", "rest.left_shoulder"])
+    names = ["joints.left_shoulder.stiffness", "joints.left_shoulder.rest"]
+    equations = Equations(load("furrer"), names)
     q, v = np.array([1.3, -1.3]), np.zeros(8)
     swept = np.stack([np.linspace(0.0, 50.0, 5), np.full(5, 1.0)], -1)
     accelerations = equations.forward_dynamics(q, v, parameters=swept)
@@ -353,7 +355,7 @@ def test_linear_velocity_does_not_enter() -> None:
 @pytest.mark.parametrize(
     ("call", "says"),
     [
-        (lambda e: Equations("furrer", ["mass.elbow"]), "no parameter 'mass.elbow'"),
+        (lambda e: Equations("furrer", ["bodies.elbow.mass"]), "no parameter 'bodies.elbow.mass'"),
         (lambda e: e.expression("jerk"), "no quantity is called 'jerk'"),
         (lambda e: e.derivative("inertia", "v"), "inertia does not depend on 'v'; it takes q"),
         (lambda e: e.momentum(np.zeros(3), np.zeros(8)), r"momentum: q has shape \(3,\)"),

@@ -273,7 +273,7 @@ def test_a_chart_is_what_single_spins_say() -> None:
 
 @pytest.mark.parametrize("axis", RANKS)
 def test_a_chart_knows_that_a_rigid_maximum_is_definite(axis: str) -> None:
-    quantities = ("mass.body", [58.3]), ("pose.shoulder", [1.0])
+    quantities = ("bodies.body.mass", [58.3]), ("pose.shoulder", [1.0])
     found = chart("furrer", *quantities, axis=axis, lock="all", energy=True)
     signature = spin("furrer", axis, {"shoulder": 1.0}).linear(lock="all").energy_signature
     assert bool(found.definite) == (signature == "definite")
@@ -282,14 +282,15 @@ def test_a_chart_knows_that_a_rigid_maximum_is_definite(axis: str) -> None:
 def test_a_chart_over_the_body_is_what_other_bodies_do() -> None:
     body, *arms = load("furrer").bodies
     lengths, masses = [0.3, 0.5], [40.0, 58.3]
-    quantities = ("com.body.3", lengths), ("mass.body", masses)
+    quantities = ("bodies.body.com.3", lengths), ("bodies.body.mass", masses)
     fixed = {"pose.shoulder": 1.3, "stiffness.shoulder": 1.2}
     found = chart("furrer", *quantities, fixed=fixed)
     for length in lengths:
         for mass in masses:
             other = replace(body, mass=mass, com=(0.0, 0.0, length))
             spun = spin(Model("other", True, (other, *arms)), 2, {"shoulder": 1.3})
-            rate = float(found.growth_rate.sel({"com.body.3": length, "mass.body": mass}))
+            at = {"bodies.body.com.3": length, "bodies.body.mass": mass}
+            rate = float(found.growth_rate.sel(at))
             assert rate == pytest.approx(spun.linear({"shoulder": 1.2}).growth_rate, abs=1e-7)
 
 
@@ -374,7 +375,9 @@ MISTAKES = {
     "'roll'; there are tilt": lambda: spin("furrer").linear().subsystem("roll"),
     "pose.shoulder against itself": lambda: chart("furrer", *[("pose.shoulder", [1.0])] * 2),
     "'poise.x'": lambda: chart("furrer", ("poise.x", [1.0]), ("pose.shoulder", [1.0])),
-    "mass.elbow": lambda: chart("furrer", ("mass.elbow", [1.0]), ("pose.shoulder", [1.0])),
+    "bodies.elbow.mass": lambda: chart(
+        "furrer", ("bodies.elbow.mass", [1.0]), ("pose.shoulder", [1.0])
+    ),
     "no coordinate 'yaw'": lambda: root_locus("furrer", ("pose.shoulder", [1]), subsystem="yaw"),
     "stable ranges of pose.shoulder": lambda: stable_ranges(
         "furrer", ("pose.shoulder", 0.0, np.nan)

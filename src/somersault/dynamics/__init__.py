@@ -16,7 +16,7 @@ from somersault.dynamics._constrained import constrained_dynamics
 from somersault.dynamics._equations import Equations
 from somersault.dynamics._motion import placements
 from somersault.dynamics._newton_euler import Momentum, inverse_dynamics, momentum
-from somersault.dynamics._parameters import parameter_values
+from somersault.dynamics._parameters import body_kind, parameter_values
 from somersault.dynamics._printing import c_code, latex
 from somersault.dynamics._springs import spring_torques
 from somersault.dynamics._symbolic import Expression
@@ -29,6 +29,7 @@ __all__ = [
     "Link",
     "Momentum",
     "Tree",
+    "body_kind",
     "c_code",
     "composite_bodies",
     "constrained_dynamics",

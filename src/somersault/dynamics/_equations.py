@@ -33,10 +33,11 @@ class Equations(SymbolicEquations):
     model
         A model, the name of one that ships, or a file.
     parameters
-        Names of numbers that stay open, so that a sweep compiles once: "mass.BODY", "com.BODY.1",
-        "inertia.BODY.12", "position.BODY.2", "stiffness.JOINT", "rest.JOINT", "damping.JOINT". Each
-        method then takes `parameters` (…, number of names), and uses the model's own numbers where
-        none are given. Everything else is a constant in the compiled code.
+        Names of numbers that stay open, so that a sweep compiles once: "bodies.BODY.mass",
+        "bodies.BODY.com.1", "bodies.BODY.inertia.12", "bodies.BODY.position.2",
+        "joints.JOINT.stiffness", "joints.JOINT.rest", "joints.JOINT.damping". Each method then
+        takes `parameters` (…, number of names), and uses the model's own numbers where none are
+        given. Everything else is a constant in the compiled code.
 
     Attributes
     ----------

@@ -1,22 +1,35 @@
-"""The numbers of a model that can stay open in its equations, and how they are spelled."""
+"""The numbers of a model that can stay open in its equations, and how they are spelled.
+
+They are spelled as in a SPEC file: "bodies.torso.mass", "bodies.torso.com.1",
+"bodies.torso.inertia.12", "bodies.torso.position.2", "joints.knee.stiffness", "joints.knee.rest",
+"joints.knee.damping".
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from somersault.model import Body, Model
 
+_OF_A_BODY = re.compile(r"bodies\..+\.(mass|com|inertia|position)(?:\.\d+)?")
 _OF_JOINTS = ("stiffness", "rest", "damping")
 
 
 def body_parameter(body: str, kind: str, part: str = "") -> str:
     """The name of a body's number: of `kind` mass, com, inertia or position, and its `part`."""
-    return f"{kind}.{body}.{part}" if part else f"{kind}.{body}"
+    return f"bodies.{body}.{kind}.{part}" if part else f"bodies.{body}.{kind}"
 
 
 def joint_parameter(joint: str, kind: str) -> str:
     """The name of a joint's stiffness, rest or damping."""
-    return f"{kind}.{joint}"
+    return f"joints.{joint}.{kind}"
+
+
+def body_kind(name: str) -> str | None:
+    """What a name says of a body: its mass, com, inertia or position; None for any other name."""
+    match = _OF_A_BODY.fullmatch(name)
+    return None if match is None else match[1]
 
 
 def parameter_values(model: Model) -> dict[str, float]:
@@ -30,7 +43,7 @@ def parameter_values(model: Model) -> dict[str, float]:
     Returns
     -------
     dict
-        From names such as "mass.torso" to the numbers that the model has, in SI units.
+        From names such as "bodies.torso.mass" to the numbers that the model has, in SI units.
     """
     values = {
         body_parameter(body.name, kind, part): value

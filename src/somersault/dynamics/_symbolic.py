@@ -67,9 +67,9 @@ class SymbolicEquations:
         for name in self.parameters:
             if name not in known:
                 raise SomersaultError(
-                    f"{model.name} has no parameter {name!r}; parameters are mass.BODY, "
-                    "com.BODY.1, position.BODY.1, inertia.BODY.12, stiffness.JOINT, rest.JOINT and "
-                    "damping.JOINT"
+                    f"{model.name} has no parameter {name!r}; parameters are bodies.BODY.mass, "
+                    "bodies.BODY.com.1, bodies.BODY.position.1, bodies.BODY.inertia.12, "
+                    "joints.JOINT.stiffness, joints.JOINT.rest and joints.JOINT.damping"
                 )
         self._expressions: dict[str, Expression] = {}
 

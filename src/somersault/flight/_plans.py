@@ -9,7 +9,7 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
-from somersault.dynamics import Equations
+from somersault.dynamics import Equations, body_kind
 from somersault.flight._takeoff import Takeoff
 from somersault.flight._values import Name
 from somersault.flight.behaviours import (
@@ -78,7 +78,7 @@ def sound(
     if isinstance(values.get(("takeoff", "spin")), np.ndarray):
         good &= np.asarray(values["takeoff", "spin"]) != 0
     for key, x in values.items():
-        if str(key[0]).startswith("mass."):
+        if body_kind(str(key[0])) == "mass":
             good &= np.asarray(x) > 0
     return good
 

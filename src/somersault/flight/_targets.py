@@ -18,7 +18,6 @@ _JOINT = re.compile(r"^joints\.(.+)\.([^\W\d]\w*)(?:\.(\d+))?$")
 _BODY = re.compile(r"^bodies\.(.+)\.(?:(mass)|(com|position)\.([123]))$")
 _TAKEOFF = re.compile(r"^takeoff\.(\w+)(?:\.([123]))?$")
 _VECTORS = ("angular_velocity", "angular_momentum")
-_OF_BODIES = ("mass.", "inertia.", "com.", "position.")
 _UNITS = {
     "somersault": "rad", "tilt": "rad", "twist": "rad", "spin": "rad/s", "tilt_rate": "rad/s",
     "twist_rate": "rad/s", "angular_velocity": "rad/s", "angular_momentum": "kg m2/s",
@@ -47,7 +46,7 @@ def targets(batch: Batch, path: str) -> tuple[Target, ...]:
 
 def body_names(names: Iterable[Name]) -> tuple[str, ...]:
     """Those of some names that are the bodies' numbers, as `Equations` has them."""
-    return tuple(str(name[0]) for name in names if str(name[0]).startswith(_OF_BODIES))
+    return tuple(str(name[0]) for name in names if str(name[0]).startswith("bodies."))
 
 
 def _of_takeoff(values: Numbers, path: str, what: str, k: str | None) -> tuple[Target, ...]:
@@ -95,16 +94,16 @@ def _of_body(
     if body not in names:
         raise SomersaultError(f"there is no body {body!r}; there are {', '.join(names)}")
     if not mass:
-        if f"{what}.{body}.{k}" not in parameter_values(model):
+        if f"bodies.{body}.{what}.{k}" not in parameter_values(model):
             raise SomersaultError(f"{body} is the base, which has no position to vary")
-        return (Target((f"{what}.{body}.{k}",), unit="m"),)
+        return (Target((f"bodies.{body}.{what}.{k}",), unit="m"),)
     own = model.bodies[names.index(body)]
     if own.mass <= 0:
         raise SomersaultError(f"body {body} has no mass, so none can be varied")
     inertia = np.asarray(own.inertia)
     # The same shape, denser: moments of inertia go with the mass.
-    return Target((f"mass.{body}",), unit="kg"), *(
-        Target((f"inertia.{body}.{i + 1}{j + 1}",), float(inertia[i, j]) / own.mass)
+    return Target((f"bodies.{body}.mass",), unit="kg"), *(
+        Target((f"bodies.{body}.inertia.{i + 1}{j + 1}",), float(inertia[i, j]) / own.mass)
         for i in range(3)
         for j in range(i, 3)
         if inertia[i, j] != 0

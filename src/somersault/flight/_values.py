@@ -1,7 +1,7 @@
 """The numbers of a takeoff by name, one for a flight or one for each of many.
 
-A name is ("takeoff", "tilt"), ("angle", joint), ("times", joint, 2), ("mass.left_arm",) …: what
-can differ between flights that share their equations.
+A name is ("takeoff", "tilt"), ("angle", joint), ("times", joint, 2), ("bodies.left_arm.mass",) …:
+what can differ between flights that share their equations.
 """
 
 from __future__ import annotations

@@ -42,8 +42,9 @@ def growth_rates(
         A shipped model's name, a model file, or a model.
     quantities : mapping of str to array_like, optional
         Arrays that broadcast against each other, by "pose.JOINT" (rad), "stiffness.JOINT" and
-        "damping.JOINT" (k/(Ω² I) and b/(Ω I)), "mass.BODY" (kg), "com.BODY.1" and
-        "position.BODY.2" (m), "inertia.BODY.11" (kg m²). JOINT may be a left–right pair.
+        "damping.JOINT" (k/(Ω² I) and b/(Ω I)), "bodies.BODY.mass" (kg), "bodies.BODY.com.1" and
+        "bodies.BODY.position.2" (m), "bodies.BODY.inertia.11" (kg m²). JOINT may be a left–right
+        pair.
     pose, stiffness, damping : mapping of str to array_like, optional
         The same of joints by their name alone, as for `spin` and `Spin.linear`.
     axis : {"minor", "intermediate", "major", 1, 2, 3}, optional

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from somersault._core.array import Array
 from somersault._core.checks import by_name
 from somersault._core.errors import SomersaultError
+from somersault.dynamics import body_kind
 from somersault.model import Model, load, spread
 from somersault.model import pose as posed
 from somersault.stability._coordinates import coordinates, locked_speeds
@@ -29,7 +30,6 @@ from somersault.stability._steady import composite_inertia, steady_matrices
 
 Values = Mapping[str, ArrayLike]
 _JOINT_KINDS = ("pose", "stiffness", "damping")
-_BODY_KINDS = ("mass", "com", "position", "inertia")
 _UNITS = {
     "stiffness": "k/(Ω² I)", "damping": "b/(Ω I)", "mass": "kg", "com": "m", "position": "m",
     "inertia": "kg m2",
@@ -40,8 +40,9 @@ _UNITS = {
 class Grid:
     """Which spins of which model: everything but the quantities that are varied.
 
-    `fixed` has quantities by their full names ("pose.shoulder", "mass.body"), the model's default
-    axis of somersault stands for none, and `subsystem` keeps the part that a coordinate is in.
+    `fixed` has quantities by their full names ("pose.shoulder", "bodies.body.mass"), the model's
+    default axis of somersault stands for none, and `subsystem` keeps the part that a coordinate is
+    in.
     """
 
     model: Model
@@ -108,7 +109,7 @@ def unit(model: Model, name: str) -> str:
     """Unit of a quantity's values."""
     kind, _, rest = name.partition(".")
     if kind != "pose":
-        return _UNITS[kind]
+        return _UNITS[body_kind(name) or kind]
     speeds = spread(model, {rest: 0}, mirrored=True)
     slides = [joint.name for joint in model.joints if joint.kind == "slide"]
     return "m" if any(name in slides for name in speeds) else "rad"
@@ -167,15 +168,16 @@ def _sorted_kinds(model: Model, quantities: Values) -> dict[str, dict[str, Array
         kind, _, rest = name.partition(".")
         if kind in _JOINT_KINDS and rest:
             kinds[kind][rest] = value
-        elif kind in _BODY_KINDS and rest:
+        elif kind == "bodies":
             kinds["body"][name] = value
         else:
             raise SomersaultError(
                 f"{name!r} is no quantity of {model.name}; use pose.JOINT, stiffness.JOINT, "
-                "damping.JOINT, mass.BODY, com.BODY.1, position.BODY.1 or inertia.BODY.11"
+                "damping.JOINT, bodies.BODY.mass, bodies.BODY.com.1, bodies.BODY.position.1 or "
+                "bodies.BODY.inertia.11"
             )
         numbers = finite(name, value)
-        least = {"mass": 1e-300, "damping": 0.0}.get(kind, -np.inf)
+        least = {"mass": 1e-300, "damping": 0.0}.get(body_kind(name) or kind, -np.inf)
         if np.any(numbers < least):
             raise SomersaultError(f"{name} goes down to {numbers.min():g}; it must be positive")
     return kinds

@@ -34,7 +34,8 @@ def _turned(angles: Array, total: bool) -> dict[str, Array]:
     inertias: dict[str, Array] = {}
     for i, value in enumerate(arm):
         rest = body.inertia[i][i] + (arm_before.inertia[i][i] - value if total else 0 * value)
-        inertias |= {f"inertia.arm.{i + 1}{i + 1}": value, f"inertia.body.{i + 1}{i + 1}": rest}
+        part = f"inertia.{i + 1}{i + 1}"
+        inertias |= {f"bodies.arm.{part}": value, f"bodies.body.{part}": rest}
     return inertias
 
 

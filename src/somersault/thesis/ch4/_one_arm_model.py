@@ -27,12 +27,12 @@ def bodies(k1: Array | float, k3: Array | float, relative: float, kl1: float) ->
     i2 = one + i3
     arm2 = relative * kl1 + relative
     return {
-        "inertia.arm.11": np.asarray(relative),
-        "inertia.arm.22": np.asarray(arm2),
-        "inertia.arm.33": np.asarray(relative),
-        "inertia.body.11": np.asarray(1 - relative),
-        "inertia.body.22": i2 - arm2,
-        "inertia.body.33": i3 - relative,
+        "bodies.arm.inertia.11": np.asarray(relative),
+        "bodies.arm.inertia.22": np.asarray(arm2),
+        "bodies.arm.inertia.33": np.asarray(relative),
+        "bodies.body.inertia.11": np.asarray(1 - relative),
+        "bodies.body.inertia.22": i2 - arm2,
+        "bodies.body.inertia.33": i3 - relative,
     }
 
 

@@ -26,7 +26,7 @@ _K1, _K3 = _RATIOS[None, :], _RATIOS[:, None]
 def _possible(relative: float) -> Array:
     """Bodies whose part outside the arm has positive inertias."""
     inertias = bodies(_K1, _K3, relative, -1.0)
-    return (inertias["inertia.body.33"] > 0) & (inertias["inertia.body.22"] > 0)
+    return (inertias["bodies.body.inertia.33"] > 0) & (inertias["bodies.body.inertia.22"] > 0)
 
 
 def fig_4_18() -> Result:
