@@ -212,8 +212,8 @@ def test_the_two_to_one_resonance_is_between_the_modes() -> None:
 @pytest.mark.slow
 def test_entries_say_why_claims_fail() -> None:
     made = (
-        launches_of_one.sec_5_4, launches.fig_5_7, launches.fig_5_8, likelihood.estimate,
-        springs_tried.springs_tried, no_ceiling.ceiling, friction.friction,
+        launches_of_one.sec_5_4, launches.fig_5_7, launches.fig_5_8, likelihood.launch_scatter,
+        springs_tried.five_springs, no_ceiling.no_ceiling, friction.shoulder_friction,
     )  # fmt: skip
     results = [make() for make in made]
     claims = [claim for result in results for claim in result.claims]

@@ -1,4 +1,4 @@
-"""One checked number or statement of the thesis, beside ours."""
+"""One checked number or statement of the thesis, with ours next to it."""
 
 from __future__ import annotations
 
@@ -14,8 +14,26 @@ if TYPE_CHECKING:
 class Claim:
     """What the thesis says, what the computation says, and whether they agree.
 
-    `thesis` and `computed` are numbers, with a `unit` and a `tolerance`, or short texts. Make one
-    with `number` or `statement`, which compute `holds`.
+    Make one with `number` or `statement`, which compute `holds`.
+
+    Attributes
+    ----------
+    id : str
+        As in claims.json, "fig4-9.range-low".
+    where : str
+        The figure, table, equation or section of the thesis.
+    claim : str
+        What is claimed, in a sentence.
+    thesis, computed : float or str
+        The thesis's number and ours, or short texts.
+    unit : str
+        Of the numbers; "1" for none, empty for texts.
+    tolerance : float or None
+        How far the numbers may be apart; None for texts.
+    holds : bool
+        Whether they agree.
+    note : str
+        How it was checked, or why it differs.
     """
 
     id: str
@@ -29,7 +47,7 @@ class Claim:
     note: str = ""
 
     def record(self) -> dict[str, Any]:
-        """As it stands in claims.json."""
+        """The claim as claims.json has it."""
         return asdict(self)
 
 
@@ -43,7 +61,33 @@ def number(
     tolerance: float,
     note: str = "",
 ) -> Claim:
-    """A number of the thesis: it holds when ours is within the tolerance of it."""
+    """A claim about a number: it holds when ours is within the tolerance of the thesis's.
+
+    Parameters
+    ----------
+    id, where, claim : str
+        As in `Claim`.
+    thesis : float
+        As printed.
+    computed : float
+        As computed here; NaN never holds.
+    unit : str
+        Of both, "1" for none.
+    tolerance : float
+        In that unit.
+    note : str
+        How it was checked, or why it differs.
+
+    Returns
+    -------
+    Claim
+
+    Examples
+    --------
+    >>> from somersault.thesis import number
+    >>> number("fig4-5.k1", "§4.3.1", "k1 at Γ = 1.3 rad", 0.65, 0.687, "1", 0.005).holds
+    False
+    """
     ours = float(computed)
     # A difference of exactly the tolerance holds, whatever the last binary digit says.
     holds = bool(abs(ours - thesis) <= tolerance * (1 + 1e-9) + 1e-15)
@@ -60,7 +104,36 @@ def statement(
     holds: bool | np.bool_,
     note: str = "",
 ) -> Claim:
-    """A statement of the thesis: `holds` is a truth value computed from data."""
+    """A claim in words, which holds or not by what the computation shows.
+
+    Parameters
+    ----------
+    id, where, claim : str
+        As in `Claim`.
+    thesis, computed : str
+        What the thesis says and what the computation shows, in a few words.
+    holds : bool
+        Computed from data, never typed.
+    note : str
+        How it was checked, or why it differs.
+
+    Returns
+    -------
+    Claim
+
+    Raises
+    ------
+    TypeError
+        If `holds` is anything but a truth value.
+
+    Examples
+    --------
+    >>> from somersault.thesis import statement
+    >>> roots = [0.2, -0.2]
+    >>> unstable = max(roots) > 0
+    >>> statement("fig", "§4.1", "the layout is unstable", "unstable", "grows", unstable).holds
+    True
+    """
     import numpy as np
 
     if not isinstance(holds, bool | np.bool_):

@@ -17,7 +17,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of short texts under a header."""
+    """Rows of short texts under a header.
+
+    Attributes
+    ----------
+    header : tuple of str
+    rows : tuple of tuple of str
+        Each as long as the header.
+    """
 
     header: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
@@ -25,7 +32,20 @@ class Table:
 
 @dataclass(frozen=True)
 class Result:
-    """What one entry gives: the thesis's statement, our result, picture, table, claims."""
+    """What one entry of the reproduction gives.
+
+    Attributes
+    ----------
+    says : str
+        What the thesis says or shows.
+    ours : str
+        What the computation gives.
+    claims : tuple of Claim
+        What was checked.
+    figure : matplotlib.figure.Figure or None
+        The picture.
+    table : Table or None
+    """
 
     says: str
     ours: str
@@ -48,7 +68,20 @@ class Deferred:
 
 @dataclass(frozen=True)
 class Entry:
-    """One figure, table or section; `beyond` marks what the thesis does not contain."""
+    """One figure, table or section that can be reproduced.
+
+    Attributes
+    ----------
+    id : str
+        "fig4-9": what `somersault reproduce` calls it.
+    title : str
+    chapter : str
+        "ch4".
+    make : callable
+        Computes its `Result`.
+    beyond : bool
+        Whether the thesis does not contain it.
+    """
 
     id: str
     title: str

@@ -1,4 +1,4 @@
-"""The pages of the reproduction: an overview, and one page a chapter."""
+"""The pages of the reproduction: an overview, and one page for each chapter."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Section:
 
 @dataclass(frozen=True)
 class ChapterPage:
-    """A chapter with those of its sections that were made."""
+    """A chapter with those of its sections that were reproduced."""
 
     id: str
     title: str
@@ -45,7 +45,7 @@ class ChapterPage:
 
     @property
     def name(self) -> str:
-        """As it is called in headings: the number of its ID and the title."""
+        """Its heading: number and title."""
         return f"{self.id.removeprefix('ch')}  {self.title}"
 
 
@@ -102,7 +102,7 @@ def index_page(chapters: Sequence[ChapterPage], errata: Iterable[Sequence[str]])
     return _page(
         "The passive somersault, reproduced",
         f"""<p class="text">Figures, tables and statements of R. R. Playter, {_BOOK} (1994),
-computed anew from the shipped models. Each claim sets what the thesis says beside what the
+computed anew from the shipped models. Each claim compares what the thesis says with what the
 computation gives, and whether the two agree is computed. {verdict(len(claims), len(differ))}</p>
 <ul class="counts">
 <li class="yes"><b>{len(claims) - len(differ)}</b>agree</li>
@@ -140,7 +140,25 @@ def chapter_page(chapter: ChapterPage) -> str:
 
 
 def verdict(count: int, differ: int) -> str:
-    """How many claims agree, in a sentence."""
+    """How many claims agree, in a sentence.
+
+    Parameters
+    ----------
+    count : int
+        Claims that were checked.
+    differ : int
+        Those that do not hold.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> from somersault.thesis import verdict
+    >>> verdict(9, 0)
+    '9 claims were checked, and all agree.'
+    """
     if not count:
         return "Nothing here was checked."
     if not differ:
@@ -178,7 +196,7 @@ def _page(title: str, header: str, links: Iterable[tuple[str, str]], body: str) 
 
 
 def _overview(chapters: Sequence[ChapterPage]) -> str:
-    """One row a chapter: what was checked, what agrees, and its sections."""
+    """One row for each chapter: what was checked, what agrees, and its sections."""
     rows = []
     for chapter in chapters:
         agree = sum(bool(claim["holds"]) for claim in chapter.claims)

@@ -25,12 +25,40 @@ def reproduce(
     progress: bool = True,
     entries: Sequence[Entry] = ENTRIES,
 ) -> list[Claim]:
-    """Regenerate what the thesis shows and check what it says.
+    """Regenerate what the thesis shows, and check what it says.
 
-    `ids` are chapters ("ch4") or entries ("fig4-9", "table4-3"); none means everything. Writes
-    figures/ID.svg and .png, tables/ID.csv, claims.json, a page for each chapter and index.html
-    into `out`, all at the end or none.
-    Raises SomersaultError for an ID that is not there or a place that cannot be written to.
+    Writes figures/ID.svg and .png, tables/ID.csv, claims.json, a page for each chapter and
+    index.html, all at the end or none.
+
+    Parameters
+    ----------
+    ids : iterable of str, or None
+        Chapters ("ch4") and entries ("fig4-9", "table4-3"); None means everything.
+    out : path
+        A folder; it is made if it is not there.
+    progress : bool
+        Whether a bar on standard error shows what is being done.
+    entries : sequence of Entry
+        What there is to reproduce; everything unless given.
+
+    Returns
+    -------
+    list of Claim
+        All that was checked, as in claims.json.
+
+    Raises
+    ------
+    SomersaultError
+        For an ID that is not there, and for a place that cannot be written to.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from somersault.thesis import reproduce
+    >>> with TemporaryDirectory() as folder:
+    ...     claims = reproduce(["table4-1"], folder, progress=False)
+    >>> len(claims), all(claim.holds for claim in claims)
+    (16, True)
     """
     chosen = select(ids, entries)
     out = Path(out)
@@ -48,7 +76,7 @@ def reproduce(
 
 
 def _written(chosen: Sequence[Entry], folder: Path, progress: bool) -> list[Claim]:
-    """Everything, in a folder that nobody sees before it is whole."""
+    """Write everything to a folder that nobody sees before it is complete."""
     from somersault.view import style as look
 
     sections: dict[str, list[Section]] = {}
@@ -99,7 +127,7 @@ def _watched(entries: Sequence[Entry], progress: bool) -> Iterable[Entry]:
 
 
 def _save(figure: Any, stem: Path) -> None:
-    """SVG and PNG that are the same, byte for byte, whenever they are made."""
+    """SVG and PNG files that come out the same, byte for byte, every time."""
     from somersault.view import style as look
 
     figure.draw_without_rendering()

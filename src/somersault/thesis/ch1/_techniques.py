@@ -32,7 +32,7 @@ SHARP = 1e-12  # accuracy of flights, rad
 _QUICK = (0.5, 0.1)  # times of the cat's turn, over the first
 
 
-# ------------------------------------------------------------------------- what is measured
+# ---------------------------------------------------------------------------- measurements
 
 
 def work(maneuver: Maneuver, samples: int = 8001) -> tuple[float, float]:
@@ -49,12 +49,12 @@ def tilted(tilt: float, pose: str = "layout", h: float = 60.0) -> Maneuver:
 
 
 def rotation_number(maneuver: Maneuver, begin: float = 0.0) -> tuple[float, float]:
-    """Twists a somersault, and mean twist rate in rad/s, flown through one twist from `begin` (s),
-    when all joints rest."""
+    """Twists per somersault, and the mean twist rate in rad/s, over one twist flown from `begin`
+    (s) on, when all joints rest."""
     first = maneuver.fly(accuracy=SHARP) if begin == 0 else until(maneuver, begin)
-    angles = first._angles[0] if begin == 0 else first._angles[-1]
+    angles = first.angles[0] if begin == 0 else first.angles[-1]
     somersault, _, twist = angles.tolist()
-    sense = np.sign(first.landing.twist - first._angles[0, 2])
+    sense = np.sign(first.landing.twist - first.angles[0, 2])
     start = maneuver.takeoff.twist
     end = twist_time(maneuver, abs(twist - start) / (2 * np.pi) + 1)
     landed = until(maneuver, end).landing
@@ -65,13 +65,13 @@ def rotation_number(maneuver: Maneuver, begin: float = 0.0) -> tuple[float, floa
 
 
 def until(maneuver: Maneuver, time: float) -> Flight:
-    """The flight of a maneuver that lands at another time (s)."""
+    """A maneuver's flight, ended at another time (s)."""
     return replace(maneuver, duration=time).fly(accuracy=SHARP)
 
 
 @cache
 def half_turn(cycles: int = 3) -> float:
-    """How far the torso is twisted (rad) for so many cycles to be half a turn."""
+    """How far the torso must twist (rad) for so many cycles to make half a turn."""
     from scipy.optimize import brentq
 
     def missing(torso: float) -> float:

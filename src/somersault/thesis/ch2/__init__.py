@@ -11,7 +11,11 @@ CHAPTER = Chapter(
     "Rigid Body Rotation",
     (
         _entry("fig2-1", "Figure 2-1: somersault, tilt and twist", "_attitude_angles.fig_2_1"),
-        _entry("eq2", "Equations 2.1–2.14: the rigid body", "_rigid_body_equations.equations_2"),
+        _entry(
+            "eq2",
+            "Equations 2.1–2.14: the rigid body",
+            "_rigid_body_equations.rigid_body_equations",
+        ),
         _entry("fig2-2", "Figure 2-2: the inertia ratio diagram", "_inertia_ratios.fig_2_2"),
         _entry("fig2-3", "Figure 2-3: stability of the simple spins", "_inertia_ratios.fig_2_3"),
         _entry("fig2-4", "Figure 2-4: curves of equal growth", "_inertia_ratios.fig_2_4"),

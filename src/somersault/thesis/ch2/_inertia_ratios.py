@@ -97,7 +97,7 @@ def _draw_2_2() -> Figure:
 
 
 def _prism(ax: Axes, k1: float, k3: float) -> None:
-    """The uniform box of these ratios, beside its point."""
+    """The uniform box with these ratios, next to its point."""
     from matplotlib.patches import Polygon
 
     from somersault.view import camera

@@ -22,7 +22,7 @@ AXES = ("front-to-back", "side-to-side", "head-to-toe")
 
 
 def minor_share(inertias: Array) -> float:
-    """Share of the sphere's area on whose curves h circles the minor axis: 2δ/π."""
+    """Share of the sphere's area in which h circles the minor axis: 2δ/π."""
     low, middle, high = np.sort(inertias)
     delta = np.arctan2(np.sqrt(1 / low - 1 / middle), np.sqrt(1 / middle - 1 / high))
     return float(2 * delta / np.pi)

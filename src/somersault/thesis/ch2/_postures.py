@@ -113,7 +113,7 @@ def fig_2_6() -> Result:
 
 @cache
 def _athlete() -> Model:
-    """The gymnast of the mean man's size, with knees: what the rigid postures are made of."""
+    """The gymnast of the average man's size, with knees, whose poses the rigid postures are."""
     return athlete(1.741, 73.0, knees=True)
 
 

@@ -13,7 +13,7 @@ from somersault.thesis.ch2._inertia_ratios import STABLE, random_bodies, roots
 from somersault.thesis.ch4._furrer import MODEL, NOMINAL
 
 
-def equations_2() -> Result:
+def rigid_body_equations() -> Result:
     """The equations of the rigid body."""
     claims = (*_kinematics(), *_motion(), *_matrices(), *_roots(), *_growth())
     return Result(

@@ -58,7 +58,7 @@ def fig_3_3() -> Result:
 
 
 def _ellipse(inertias: Array) -> float:
-    """Greatest over least deviation on small curves round the major axis 2."""
+    """Greatest over least deviation on small curves around the major axis 2."""
     one, two, three = inertias
     ratio = np.sqrt((1 / three - 1 / two) / (1 / one - 1 / two))
     return float(max(ratio, 1 / ratio))

@@ -20,7 +20,7 @@ CHAPTER = Chapter(
         _entry(
             "eq4-1",
             "Equations 4.1–4.9: small deviations from a somersault",
-            "_linear_equations.equations",
+            "_linear_equations.small_deviations",
         ),
         _entry(
             "appA-3", "Appendix A.3: elements of the linear model", "_linear_equations.appendix_a_3"
@@ -31,7 +31,7 @@ CHAPTER = Chapter(
         _entry(
             "energy",
             "Why damping destroys it: the energy's signature",
-            "_damping.energy",
+            "_damping.energy_signature",
             beyond=True,
         ),
         _entry("fig4-8", "Figure 4-8: root loci for eight arm angles", "_root_loci.fig_4_8"),

@@ -167,7 +167,7 @@ def _draw_4_7(roots: Array, moving: Array, best: int) -> Figure:
 # ------------------------------------------------------------------ beyond the thesis
 
 
-def energy() -> Result:
+def energy_signature() -> Result:
     """Which stable spins are minima of the energy: why figure 4-7 comes out as it does."""
     angles, stiffness = np.linspace(0, 3, 151), np.linspace(LOW, HIGH, 301)
     layout = st.chart(MODEL, (ANGLE, angles), (STIFFNESS, stiffness), subsystem=THREE, energy=True)

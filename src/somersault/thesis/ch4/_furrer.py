@@ -1,4 +1,4 @@
-"""What several figures share: Furrer's regions of stability, found in two ways.
+"""What several figures share: Furrer's regions of stability, computed in two ways.
 
 The charts search with `stability.chart`, which removes the integrals of angular momentum. The
 edges in closed form come from the characteristic polynomial of the matrices themselves.
@@ -132,7 +132,7 @@ def edges(angles: Array) -> Edges:
 
 
 def searched(subsystem: str, angles: Array, steps: int = 1200) -> list[list[tuple[float, float]]]:
-    """Stable ranges of K_sh within −2 to 4 at each angle, by looking and then halving."""
+    """Stable ranges of K_sh within −2 to 4 at each angle, by a scan and bisection."""
     values = np.linspace(LOW, HIGH, steps + 1)
     inside = _stable(subsystem, angles[:, None], values[None, :])
     row, column = np.nonzero(inside[:, 1:] != inside[:, :-1])

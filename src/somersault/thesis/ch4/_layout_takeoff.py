@@ -1,9 +1,9 @@
 """Furrer's layout flights, one at a time.
 
 Two starts are possible where the thesis says "tilt 0.01, twist 0". "momentum": the angular
-momentum is along the inertial axis 2, as on the maps of section 2.5. "rates": of the angles'
-rates only the somersault's is not zero, as one would set the state of a simulation; the momentum
-is then nearer to the body's own axis than the tilt says, by I3/I2.
+momentum is along the inertial axis 2, as on the maps of section 2.5. "rates": only
+the somersault angle changes at first, as one would set the state of a simulation; the momentum is
+then nearer to the body's axis than the tilt says, by I3/I2.
 """
 
 from __future__ import annotations

@@ -50,8 +50,8 @@ def lifetimes(
 ) -> Lifetimes:
     """A flight for each arm angle (n,) and K_sh (m,): arrays (n, m).
 
-    The quarter twist, where the momentum along body axis 2 changes sign, is found as an event
-    of the integration. Flights go on for a fifth longer than eight nominal turns, so that one
+    The quarter twist, where the momentum along body axis 2 changes sign, is an event of the
+    integration. Flights go on for a fifth longer than eight nominal turns, so that one
     that somersaults slowly gets there too.
     """
     vary = {

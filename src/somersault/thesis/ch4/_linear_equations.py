@@ -39,7 +39,7 @@ _REFERENCE = {
 }
 
 
-def equations() -> Result:
+def small_deviations() -> Result:
     """The form of the linear equations: which elements vanish, what couples, what is singular."""
     systems = [at(float(angle)) for angle in _ANGLES]
     claims = [

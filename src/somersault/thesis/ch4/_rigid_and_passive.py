@@ -39,7 +39,7 @@ def locked(tilt: float = 0.01, twist: float = 0.0) -> Flight:
 
 @cache
 def stiff() -> Flight:
-    """The same with stiff, damped shoulders: the thesis's own way to make the body rigid."""
+    """The same with stiff, damped shoulders: the thesis's way of making the body rigid."""
     return fly(MODEL, takeoff(sprung(NOMINAL, *_STIFF)), 8 * TURN, samples=4001)
 
 

@@ -26,19 +26,22 @@ CHAPTER = Chapter(
         ),
         _entry("fig5-8", "Figure 5-8: completely stable launches", "_launch_results.fig_5_8"),
         _entry(
-            "ch5-scatter", "How the launches scattered", "_launch_scatter.estimate", beyond=True
+            "ch5-scatter",
+            "How the launches scattered",
+            "_launch_scatter.launch_scatter",
+            beyond=True,
         ),
         _entry(
             "ch5-springs",
             "Which five springs the doll had",
-            "_five_springs.springs_tried",
+            "_five_springs.five_springs",
             beyond=True,
         ),
-        _entry("ch5-ceiling", "The doll with no ceiling", "_no_ceiling.ceiling", beyond=True),
+        _entry("ch5-ceiling", "The doll with no ceiling", "_no_ceiling.no_ceiling", beyond=True),
         _entry(
             "ch5-friction",
             "Friction in the doll's shoulders",
-            "_shoulder_friction.friction",
+            "_shoulder_friction.shoulder_friction",
             beyond=True,
         ),
     ),

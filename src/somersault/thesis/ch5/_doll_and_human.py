@@ -153,7 +153,7 @@ def _draw_5_2(human: tuple[Array, Array], dolls: dict[str, tuple[Array, Array]])
 
 
 def fig_5_3() -> Result:
-    """How large the arms are beside the body."""
+    """How large the arms are compared with the body."""
     relative = {name: doll.relative_inertia(name, ANGLES) for name in _LOOKS}
     human, ours = relative[MODEL], relative[WEIGHTED]
     ratio, bare = ours / human, relative[BARE] / human

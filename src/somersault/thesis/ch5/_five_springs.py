@@ -60,7 +60,7 @@ class FiveSprings:
 
 @cache
 def _chances() -> dict[str, Array]:
-    """The probability of what was seen with each of STIFFNESSES, were that its role."""
+    """For each role a spring may have had, the probability of its results at STIFFNESSES."""
     outcome = swept(SCATTER)
     columns = (likelihood.smoothed(outcome), outcome.mean, outcome.deviation)
     return {role: likelihood.of_spring(*columns, role) for role in ("best", "stiffest", "softer")}
@@ -97,7 +97,7 @@ def best_sets() -> dict[int, FiveSprings]:
     return best
 
 
-def springs_tried() -> Result:
+def five_springs() -> Result:
     """Springs, and the gap above 0.82."""
     sets = best_sets()
     ours = FiveSprings(SPRINGS, OMITTED, probability(SPRINGS))

@@ -1,4 +1,4 @@
-"""Figures 5-7 and 5-8: twenty launches a condition, and two thousand beside them."""
+"""Figures 5-7 and 5-8: twenty launches for each condition, and two thousand to compare."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def intervals(outcome: Outcome) -> xr.Dataset:
 
 @cache
 def repeated() -> dict[str, Array]:
-    """Ten thousand experiments of twenty launches a condition: what would be seen.
+    """Ten thousand experiments of twenty launches for each condition: what would be seen.
 
     "stable" (repeats, conditions) how many of twenty, "mean" and "deviation" of somersaults.
     """

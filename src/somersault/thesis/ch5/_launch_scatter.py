@@ -51,7 +51,7 @@ class Chances:
 
     @property
     def together(self) -> float:
-        """Of all of it; the conditions are independent."""
+        """Of all results together; the conditions are independent."""
         return float(np.prod(self.each))
 
 
@@ -82,7 +82,7 @@ def smoothed(outcome: Outcome) -> Array:
 
 
 def chances(outcome: Outcome) -> Chances:
-    """Of the six conditions."""
+    """The probabilities of what was seen in each of the six conditions."""
     share, mean, deviation = smoothed(outcome), outcome.mean, outcome.deviation
     last = len(SPRINGS) - 1
     roles = {BEST_AT: "best", last: "stiffest"}
@@ -121,7 +121,7 @@ def allowed(name: str) -> list[float]:
     return [value for value, good in zip(AXES[name], inside, strict=True) if good]
 
 
-def estimate() -> Result:
+def launch_scatter() -> Result:
     """The scatter, and how well it is determined."""
     ours = chances(experiment.many())
     names = (*(f"K_sh = {k:.2f}" for k in SPRINGS), "clamped")

@@ -84,7 +84,7 @@ class Launch:
     def mount(self) -> Mount:
         """The doll in the clamp, the launcher's spring tensioned so that it reaches the spin.
 
-        The tension is found from the energy of the doll with its arms still, from hanging,
+        The tension follows from the energy of the doll with its arms still, from hanging,
         wound back, to the release.
         """
         held = _mount(self, RELEASE).held
@@ -117,7 +117,7 @@ class Launch:
 
     @cached_property
     def release(self) -> Release:
-        """What flies."""
+        """The doll's takeoff, and where it stands then."""
         return released(self.swing, self.mount)
 
     @property

@@ -78,7 +78,7 @@ def resonance() -> float:
     return float(np.interp(0.0, off, STIFFNESSES[_BETWEEN]))
 
 
-def ceiling() -> Result:
+def no_ceiling() -> Result:
     """Lifetimes."""
     (low, high), *_ = doll.springs(WEIGHTED, ARMS)
     at = int(np.argmin(np.abs(STIFFNESSES - BEST)))

@@ -81,7 +81,7 @@ class _Fit:
 
 @cache
 def _fit(reach: float) -> _Fit:
-    """By hand, as everything here follows from the distance to the doll's centre of mass."""
+    """In closed form: everything here follows from the distance to the doll's centre of mass."""
     out = launch().out + reach - launcher.REACH
     climb = SPIN * out * np.sin(RELEASE)
     apex = CEILING - _MARGIN - launcher.radius()
@@ -231,7 +231,7 @@ def _carried(throw: Launch) -> Claim:
 def carried(throw: Launch) -> float:
     """Largest relative difference of momentum, angular momentum and energy across the release.
 
-    Before it they are those of the held model, in which the clamp's part is known by itself.
+    Before it they are those of the held model, from which the clamp's known part is taken.
     """
     held, moving = throw.mount.held, throw.swing.u[-1, 0]
     equations, q, u = Equations(held), throw.swing.q[-1], throw.swing.u[-1]
@@ -329,7 +329,7 @@ def _draw_laboratory(ax: object, throw: Launch) -> None:
 
 
 def _on_bar(throw: Launch, angle: float, reach: float | None = None) -> Array:
-    """Where something stands at a reach from the bar; the doll's centre of mass if not said."""
+    """A point at a reach from the bar; by default the doll's centre of mass."""
     out = -(throw.out if reach is None else reach)
     return np.array([0, 0, BAR_HEIGHT]) + out * np.array([np.sin(angle), 0, np.cos(angle)])
 

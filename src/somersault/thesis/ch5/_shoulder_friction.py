@@ -1,4 +1,4 @@
-"""What friction in the doll's shoulders does: dampers, given that damping destabilises."""
+"""What friction in the doll's shoulders does, given that damping destabilises."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def caught(damping: float) -> Array:
 _SAID = "a quarter of the scatter, thirty turns' time"
 
 
-def friction() -> Result:
+def shoulder_friction() -> Result:
     """Growth rates, lifetimes, and what the laboratory would have seen."""
     rates = growth()
     rows = [

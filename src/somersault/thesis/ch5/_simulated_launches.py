@@ -43,7 +43,7 @@ class Scatter:
     pretension: float
 
     def vary(self, sprung: bool) -> dict[str, Vary]:
-        """As quantities of an ensemble."""
+        """The varied quantities of an ensemble."""
         varied = {
             "tilted": (("takeoff.tilt",), self.attitude, "rad"),
             "twisted": (("takeoff.twist",), self.attitude, "rad"),
@@ -153,7 +153,7 @@ def many() -> Outcome:
 
 @cache
 def twenty(seed: int = SEED) -> Outcome:
-    """The laboratory's sequence: twenty launches a condition, each with draws of its own."""
+    """The laboratory's sequence: twenty launches for each condition, each with its own draws."""
     conditions = [sprung([k], SCATTER, LAUNCHES, seed + i) for i, k in enumerate(SPRINGS)]
     whole = conditions[0]
     for more in (*conditions[1:], clamped(SCATTER, LAUNCHES, seed + len(SPRINGS))):
@@ -162,5 +162,5 @@ def twenty(seed: int = SEED) -> Outcome:
 
 
 def at_least(share: Array, hits: int, of: int = LAUNCHES) -> Array:
-    """The probability of at least so many stable launches where each is with a probability."""
+    """The probability of at least `hits` stable launches, each being stable with a probability."""
     return np.asarray(stats.binom.sf(hits - 1, of, share))

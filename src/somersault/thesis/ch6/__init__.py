@@ -15,14 +15,24 @@ CHAPTER = Chapter(
         _entry("fig6-1", "Figure 6-1: the rudi", "_rudi_flights.fig_6_1"),
         _entry("fig6-2", "Figure 6-2: landings with prescribed joints", "_rudi_maps.fig_6_2"),
         _entry("fig6-3", "Figure 6-3: landings with compliant joints", "_rudi_maps.fig_6_3"),
-        _entry("ch6-poses", "In which pose the gains are taken", "_rudi_maps.poses", beyond=True),
-        _entry("sec6-3-h", "Section 6.3.3: other angular momenta", "_rudi_maps.momentum"),
+        _entry(
+            "ch6-poses", "In which pose the gains are taken", "_rudi_maps.gain_poses", beyond=True
+        ),
+        _entry("sec6-3-h", "Section 6.3.3: other angular momenta", "_rudi_maps.other_momenta"),
         _entry("fig6-4", "Figure 6-4: an off-nominal start, prescribed", "_rudi_flights.fig_6_4"),
         _entry("fig6-5", "Figure 6-5: the same start, compliant", "_rudi_flights.fig_6_5"),
         _entry("table6-1", "Table 6.1: the rudi's eigenfrequencies", "_eigenfrequencies.table_6_1"),
-        _entry("ch6-why", "Why compliance lands better", "_landing_sensitivity.why", beyond=True),
         _entry(
-            "ch6-gentle", "A rudi with an athlete's torques", "_bounded_torques.gentle", beyond=True
+            "ch6-why",
+            "Why compliance lands better",
+            "_landing_sensitivity.landing_sensitivity",
+            beyond=True,
+        ),
+        _entry(
+            "ch6-gentle",
+            "A rudi with an athlete's torques",
+            "_bounded_torques.bounded_torques",
+            beyond=True,
         ),
     ),
 )

@@ -41,7 +41,7 @@ def best() -> float:
     return max(_FREQUENCIES, key=lambda f: _map(f).share)
 
 
-def gentle() -> Result:
+def bounded_torques() -> Result:
     """The gentler motion, its front and its maps."""
     at, (rate, when) = best(), rudi.twist_rate(_KEPT)
     soft, stiff = _map(at, 21), _map(None, 21)

@@ -35,7 +35,7 @@ class Extensions:
 
     `moment` is how far the principal axes have twisted, in turns, in the middle of the extension;
     `tilt` (rad) the mean of theirs over a twist once the body is straight; `swung` how far the
-    hula by itself tilts them; `twists` a somersault afterwards.
+    hula alone tilts them; `twists` per somersault afterwards.
     """
 
     moment: Array

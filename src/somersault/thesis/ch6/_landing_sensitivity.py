@@ -42,7 +42,7 @@ def only(groups: tuple[str, ...], frequency: float) -> Takeoff:
 
 @cache
 def _shares() -> dict[str, tuple[float, float]]:
-    """Share of small errors with one group of joints compliant alone, and with all but it."""
+    """Share of small errors with one group of joints compliant alone, and with all others."""
     shares = {}
     for group in _GROUPS:
         others = tuple(name for name in _GROUPS if name != group)
@@ -85,8 +85,8 @@ def _opening() -> Array:
     return np.array(rows)
 
 
-def why() -> Result:
-    """Sensitivities against the natural frequency, and which joints carry it."""
+def landing_sensitivity() -> Result:
+    """Sensitivities against the natural frequency, and which joints matter for them."""
     slopes, stiff = _sensitivities(), rudi.sensitivity(None)
     twist = slopes[:, 2]
     sizes = np.linalg.norm(slopes, axis=(1, 2))
@@ -152,7 +152,7 @@ def why() -> Result:
 
 
 def _crossing(values: Array) -> float | None:
-    """The frequency at which values over the frequencies change sign, the highest."""
+    """The highest frequency at which values over the frequencies change sign."""
     signs = np.flatnonzero(values[:-1] * values[1:] < 0)
     if not signs.size:
         return None

@@ -1,9 +1,9 @@
 """The rudi of chapter 6: its motion, and maps of how it lands from off-nominal starts.
 
-The motion is data (rudi.json), found by scripts/rudi.py; the thesis's own was programmed by hand
-and is not printed. Perturbed starts keep the nominal's angular momentum in space. A second motion
-is kept, with bounded joint torques (rudi_gentle.json): what is said of the nominal one can be
-asked of either.
+The motion is data (rudi.json) from the search in scripts/rudi.py; the thesis's motion was
+programmed by hand and is not printed. Perturbed starts keep the nominal's angular momentum in
+space. There is a second motion with bounded joint torques (rudi_gentle.json), of which everything
+can be computed too.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ Kept = Literal["rudi", "rudi_gentle"]
 
 @cache
 def data(kept: Kept = "rudi") -> dict[str, Any]:
-    """A motion as it is kept."""
+    """A motion as its file has it."""
     return json.loads((files("somersault.thesis.ch6") / f"{kept}.json").read_text())
 
 
@@ -88,7 +88,7 @@ def strategy(
 ) -> Takeoff:
     """Compliant at a natural frequency (rad/s), or prescribed where that is None.
 
-    Gains are from the outboard inertias in the motion's own `pose`: in mid-twist (wrap), at
+    Gains are from the outboard inertias in a `pose` of the motion: in mid-twist (wrap), at
     takeoff (pike), or following it.
     """
     if frequency is None:

@@ -142,8 +142,8 @@ def _median(lands: rudi.Landings) -> float:
     return float(np.nanmedian(lands.error))
 
 
-def poses() -> Result:
-    """Which pose the gains' inertias are of."""
+def gain_poses() -> Result:
+    """In which pose the gains' inertias are taken."""
     shares = {pose: {f: rudi.error_map(f, pose, _FEWER) for f in _FEW} for pose in _POSES}
     top = {pose: max(m.share for m in maps.values()) for pose, maps in shares.items()}
     stiff = rudi.error_map(None, points=_FEWER).share
@@ -169,7 +169,7 @@ def poses() -> Result:
     )
 
 
-def momentum() -> Result:
+def other_momenta() -> Result:
     """0.9 h and 1.1 h."""
     claims = []
     rows = []

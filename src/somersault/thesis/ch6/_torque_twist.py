@@ -33,8 +33,8 @@ _TILTS = (0.1, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0)  # degrees
 def stopped_torque_twist() -> tuple[Maneuver, float, float]:
     """A torque twist with arms out, ended by leaning the arms: (maneuver, time, amplitude).
 
-    Sought are the moment (s) and the amplitude (rad: the left arm goes up by it, the right
-    one down) after which the momentum lies along a principal axis.
+    Solved for the moment (s) and the amplitude (rad: the left arm goes up by it, the right one
+    down) after which the momentum lies along a principal axis.
     """
     from scipy.optimize import fsolve
 
@@ -60,7 +60,7 @@ def stopped_torque_twist() -> tuple[Maneuver, float, float]:
 
 @cache
 def rotation_numbers() -> tuple[tuple[float, float, float, float], ...]:
-    """Tilt (°), and twists a somersault: flown, by elliptic integrals, by quadrature."""
+    """Tilt (°), and twists per somersault: flown, by elliptic integrals, by quadrature."""
     rows = []
     for degrees in _TILTS:
         maneuver = tilted(float(np.radians(degrees)))
