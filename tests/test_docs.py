@@ -10,7 +10,9 @@ from types import ModuleType
 import pytest
 
 DOCS = Path(__file__).parents[1] / "docs"
-RUN = ("extending", pytest.param("ensembles", marks=pytest.mark.slow))
+QUICK = ("extending", "flight", "models", "motions", "maneuvers", "doll")
+SLOW = ("ensembles", "stability", "twisting")
+RUN = (*QUICK, *(pytest.param(page, marks=pytest.mark.slow) for page in SLOW))
 BLOCK = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 
 
@@ -18,6 +20,7 @@ BLOCK = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 def test_the_code_of_a_page_runs(
     page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    (tmp_path / "examples").symlink_to(DOCS.parent / "examples")
     monkeypatch.chdir(tmp_path)
     module = ModuleType(page)
     monkeypatch.setitem(sys.modules, page, module)
