@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.integrate import solve_ivp
+from scipy.integrate import quad, solve_ivp
 
 from somersault import attitude
 from somersault._core.errors import SomersaultError
@@ -397,3 +397,27 @@ def test_near_the_separatrix_periods_grow_with_the_logarithm() -> None:
     np.testing.assert_allclose(grown[2:], 4 * np.log(10) / 2, rtol=1e-3)
     for m in made:
         assert m.period == pytest.approx(period_and_somersault(inertias, m.omega0)[0], rel=1e-4)
+
+
+# -------------------------------------------------------------------------------- mean tilt
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_mean_tilt_is_that_of_an_adaptive_quadrature(seed: int) -> None:
+    of = motion(seed)
+
+    def tilt(t: float) -> float:
+        h = of.inertias * of.omega(t)
+        return -np.arcsin(h[2] / np.linalg.norm(h))
+
+    wanted, _ = quad(tilt, 0, of.period, epsabs=1e-12, limit=200)
+    assert of.mean_tilt == pytest.approx(wanted / of.period, abs=1e-10)
+
+
+def test_a_steady_tilt_is_its_own_mean_and_the_separatrix_has_none() -> None:
+    symmetric = RigidMotion((1.0, 1.0, 0.4), (0.3, 1.0, 0.5))
+    h = symmetric.inertias * symmetric.omega0
+    assert symmetric.mean_tilt == pytest.approx(-np.arcsin(h[2] / np.linalg.norm(h)))
+    assert RigidMotion((3.0, 2.0, 1.0), (0.0, 1.0, 0.0)).mean_tilt == pytest.approx(0)
+    with pytest.raises(SomersaultError, match="separatrix"):
+        _ = RigidMotion(*EXACT_SEPARATRIX).mean_tilt

@@ -14,12 +14,14 @@ from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.rigid._euler import Kind, checked_omega, kind_of_motion
 from somersault.rigid._inertia import checked_inertias
+from somersault.rigid._map import tilt_and_twist
 from somersault.rigid._orbit import Orbit, orbit
 from somersault.rigid._precession import Precession
 from somersault.rigid._quadrature import period_and_somersault
 
 _ALONG = 1e-14  # sine of the angle to inertial axis 2 below which h counts as lying along it
 _MOST_SAMPLES = 2_000_000
+_PER_PERIOD = 256  # samples of a mean over a period: of a smooth one every digit
 _STEP = 0.02  # rad of turning between samples where turns are counted along the path
 
 
@@ -128,6 +130,24 @@ class RigidMotion:
         """
         somersault, twist = self.mean_rates
         return twist / somersault
+
+    @property
+    def mean_tilt(self) -> float:
+        """Mean tilt of the body against its angular momentum over a period, rad.
+
+        Raises
+        ------
+        SomersaultError
+            On the separatrix, which has no period.
+        """
+        if self._orbit is not None and math.isinf(self.period):
+            raise SomersaultError(
+                "This motion is on the separatrix and never comes back, so it has no mean tilt; "
+                "ask for angles(t) instead."
+            )
+        period = self.period if self._orbit is not None else 0.0
+        times = np.arange(_PER_PERIOD) * period / _PER_PERIOD
+        return float(tilt_and_twist(self.omega(times) * self.inertias)[0].mean())
 
     def omega(self, t: ArrayLike) -> Array:
         """ω (…, 3) in body axes, rad/s, at times t (…), s: A.8 to A.17."""

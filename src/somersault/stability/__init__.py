@@ -8,6 +8,7 @@ from somersault.stability._chart import (
     stable_ranges_by_case,
 )
 from somersault.stability._coordinates import locked_speeds
+from somersault.stability._joint_roots import joint_roots
 from somersault.stability._modes import Mode
 from somersault.stability._principal import PrincipalAxes, principal_axes
 from somersault.stability._spin import principal_inertias, spin
@@ -22,6 +23,7 @@ __all__ = [
     "chart",
     "growth_rates",
     "holding_torques",
+    "joint_roots",
     "locked_speeds",
     "principal_axes",
     "principal_inertias",

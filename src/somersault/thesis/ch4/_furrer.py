@@ -132,27 +132,10 @@ def edges(angles: Array) -> Edges:
 
 
 def searched(subsystem: str, angles: Array, steps: int = 1200) -> list[list[tuple[float, float]]]:
-    """Stable ranges of K_sh within −2 to 4 at each angle, by a scan and bisection."""
-    values = np.linspace(LOW, HIGH, steps + 1)
-    inside = _stable(subsystem, angles[:, None], values[None, :])
-    row, column = np.nonzero(inside[:, 1:] != inside[:, :-1])
-    left, right = values[column], values[column + 1]
-    starts = inside[row, column]
-    for _ in range(32 if len(row) else 0):
-        middle = (left + right) / 2
-        same = _stable(subsystem, angles[row], middle) == starts
-        left, right = np.where(same, middle, left), np.where(same, right, middle)
-    ranges = []
-    for i in range(len(angles)):
-        ends = [float(x) for x in ((left + right) / 2)[row == i]]
-        ends = [*([LOW] if inside[i, 0] else []), *ends, *([HIGH] if inside[i, -1] else [])]
-        ranges.append(list(zip(ends[::2], ends[1::2], strict=True)))
-    return ranges
-
-
-def _stable(subsystem: str, angle: Array, stiffness: Array) -> Array:
-    rates = st.growth_rates(MODEL, {ANGLE: angle, STIFFNESS: stiffness}, subsystem=subsystem)
-    return rates <= GROWS
+    """Stable ranges of K_sh within −2 to 4 at each angle."""
+    return st.stable_ranges_by_case(
+        MODEL, (STIFFNESS, LOW, HIGH), fixed={ANGLE: angles}, subsystem=subsystem, samples=steps + 1
+    )
 
 
 def undivided_growth(angle: float, stiffness: Array, damping: float = 0.0) -> Array:

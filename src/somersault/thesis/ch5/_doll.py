@@ -17,7 +17,7 @@ from somersault import rigid
 from somersault import stability as st
 from somersault._core.array import Array
 from somersault.model import Model, load
-from somersault.thesis.ch4._furrer import ANGLE, GROWS, HIGH, LOW, STIFFNESS
+from somersault.thesis.ch4._furrer import ANGLE, HIGH, LOW, STIFFNESS
 
 BARE, WEIGHTED = "doll", "doll_weighted"
 STRAIGHT = 1.57  # the nominal arm angle Γ of §§5.3 and 5.5, rad
@@ -124,21 +124,13 @@ def edges(model: str | Model) -> tuple[Array, Array]:
 
     At every angle the dolls and the human have one range or none.
     """
-    inside = region(model)
-    some = np.flatnonzero(inside.any(0))
-    ends = np.full((2, len(ANGLES)), np.nan)
-    last = len(SPRINGS) - 1
-    first_in = inside[:, some].argmax(0)
-    last_in = last - inside[::-1, some].argmax(0)
-    for row, (within, beyond) in enumerate(((first_in, first_in - 1), (last_in, last_in + 1))):
-        stable, unstable = SPRINGS[within], SPRINGS[np.clip(beyond, 0, last)]
-        for _ in range(20):
-            middle = (stable + unstable) / 2
-            rates = st.growth_rates(model, {ANGLE: ANGLES[some], STIFFNESS: middle})
-            stable = np.where(rates <= GROWS, middle, stable)
-            unstable = np.where(rates <= GROWS, unstable, middle)
-        ends[row, some] = stable
-    return ends[0], ends[1]
+    every = st.stable_ranges_by_case(
+        model, (STIFFNESS, LOW, HIGH), fixed={ANGLE: ANGLES}, samples=len(SPRINGS)
+    )
+    ends = np.array(
+        [(ranges[0][0], ranges[-1][1]) if ranges else (np.nan, np.nan) for ranges in every]
+    )
+    return ends[:, 0], ends[:, 1]
 
 
 def width(model: str | Model, angle: float = STRAIGHT) -> float:

@@ -12,9 +12,11 @@ from functools import cache
 
 import numpy as np
 
+from somersault import stability as st
 from somersault._core.array import Array
 from somersault.dynamics import Equations
 from somersault.model import load, named_pose
+from somersault.model import pose as posed
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result, Table
 from somersault.thesis.ch6 import _rudi as rudi
@@ -35,6 +37,7 @@ PRINTED = {
     ),
 }  # fmt: skip
 _ZETA, _FREQUENCY = 0.7, 30.0
+_ARM = ("shoulder_abduction", "shoulder_rotation", "shoulder_flexion", "elbow")
 _NEAR = 0.25  # of a printed root: how far ours may be from it
 
 
@@ -42,28 +45,19 @@ _NEAR = 0.25  # of a printed root: how far ours may be from it
 def roots(pose: str, of: str = "wrap") -> Array:
     """The 26 roots of the gymnast in a pose, with gains from the outboard inertias `of` another."""
     model = load(rudi.MODEL)
-    equations = Equations(model)
-    gains = equations.outboard_inertia(_coordinates(of)) * _FREQUENCY**2
-    whole = equations.mass_matrix(_coordinates(pose))
-    coupling = whole[:6, 6:]
-    moving = whole[6:, 6:] - coupling.T @ np.linalg.solve(whole[:6, :6], coupling)
-    values = np.linalg.eigvals(np.linalg.solve(moving, np.diag(gains))).real
-    by = 2 * _ZETA / _FREQUENCY * values
-    split = np.sqrt(by**2 - 4 * values + 0j)
-    both = np.concatenate([(-by + split) / 2, (-by - split) / 2])
+    inertias = Equations(model).outboard_inertia(posed(model, _angles(of)))
+    springs = dict(zip(model.speeds, (inertias * _FREQUENCY**2).tolist(), strict=True))
+    dampers = {joint: 2 * _ZETA / _FREQUENCY * k for joint, k in springs.items()}
+    both = st.joint_roots(model, _angles(pose), stiffness=springs, damping=dampers)
     return both[np.argsort(-np.abs(both))]
 
 
-def _coordinates(pose: str) -> Array:
+def _angles(pose: str) -> dict[str, float]:
     model = load(rudi.MODEL)
-    angles = named_pose(model, "pike" if pose == "pike" else "wrap")
-    if pose == "pike":  # as it takes off: arms straight out
-        angles |= {
-            name: named_pose(model, "T")[name]
-            for name in ("shoulder_abduction", "shoulder_rotation", "shoulder_flexion", "elbow")
-        }
-    names = [n.removeprefix("left_").removeprefix("right_") for n in model.coordinates]
-    return np.array([angles[name] for name in names])
+    if pose != "pike":
+        return named_pose(model, "wrap")
+    out = named_pose(model, "T")  # as it takes off: arms straight out
+    return named_pose(model, "pike") | {name: out[name] for name in _ARM}
 
 
 def printed_rule(pose: str) -> tuple[float, float]:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from somersault import rigid
 from somersault._core.array import Array
 from somersault.flight import (
     hula,
@@ -49,12 +48,6 @@ class Extensions:
         return (self.moment >= 0.25) & (self.moment <= 0.75)
 
 
-def mean_tilt(motion: rigid.RigidMotion, samples: int = 256) -> float:
-    """Mean tilt of a rigid motion against its momentum over a period, rad."""
-    times = np.arange(samples) * motion.period / samples
-    return float(rigid.tilt_and_twist(motion.omega(times) * motion.inertias)[0].mean())
-
-
 @cache
 def extensions(arms: str = ABDUCTED, **style: float) -> Extensions:
     """The gymnast's hulas with the arms as in a pose until he extends, then at his sides."""
@@ -70,7 +63,7 @@ def extensions(arms: str = ABDUCTED, **style: float) -> Extensions:
         if hold == 0.0:
             swung = float(np.interp(_BEGIN + _QUARTER, flown.times, tilt))
         after = rigid_continuation(flown)
-        rows.append((abs(turned) / (2 * np.pi), mean_tilt(after), after.twists_per_somersault))
+        rows.append((abs(turned) / (2 * np.pi), after.mean_tilt, after.twists_per_somersault))
     moment, final, twists = np.array(rows).T
     return Extensions(moment, final, swung, twists)
 
