@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from trees import random_tree
@@ -9,8 +11,8 @@ from trees import random_tree
 import somersault as so
 from somersault import SomersaultError
 from somersault.dynamics import Equations
-from somersault.model import Body, Joint, Model
-from somersault.stability import joint_roots, stable_ranges, stable_ranges_by_case
+from somersault.model import Body, Follow, Joint, Model
+from somersault.stability import joint_roots, spin, stable_ranges, stable_ranges_by_case
 
 BOX = ((0.2, 0.0, 0.0), (0.0, 0.3, 0.0), (0.0, 0.0, 0.4))
 
@@ -106,3 +108,56 @@ def test_each_call_knows_how_many_cases_it_is_for() -> None:
         stable_ranges_by_case("furrer", along, pose={"shoulder": 1.0})
     with pytest.raises(SomersaultError, match="varied and fixed at once"):
         stable_ranges("furrer", along, stiffness={"shoulder": 1.0})
+
+
+# ------------------------------------------------------------------- joints that follow others
+
+
+def geared(factor: float, offset: float) -> tuple[Model, Model]:
+    """A body with an arm of two links, whose second joint follows the first; and the same free."""
+    model = random_tree(np.random.default_rng(31), 4, True, ("hinge",))
+    leader, follower = model.joints[0].name, model.joints[1].name
+
+    def with_follow(body: Body) -> Body:
+        joints = tuple(
+            replace(j, follows=Follow(leader, factor, offset)) if j.name == follower else j
+            for j in body.joints
+        )
+        return replace(body, joints=joints)
+
+    return replace(model, bodies=tuple(map(with_follow, model.bodies))), model
+
+
+@pytest.mark.parametrize("factor", [-1.0, 0.5])
+def test_a_joint_that_follows_is_a_gear_without_play(factor: float) -> None:
+    """The slow roots of a gear spring that gets ever stiffer, k (q₂ − m q₁)²/2."""
+    bound, loose = geared(factor, 0.2)
+    leader, follower, *others = [joint.name for joint in loose.joints]
+    pose = {leader: 0.3, **dict.fromkeys(others, 0.1)}
+    followed = spin(bound, "major", pose)
+    free = spin(loose, "major", {**pose, follower: 0.2 + factor * 0.3})
+    springs, dampers = dict.fromkeys(loose.speeds, 2.0), {follower: 0.1}
+    system = followed.linear(springs, dampers)
+    assert len(system.coordinates) == len(loose.joints) + 2
+    assert follower not in system.coordinates
+    whole = free.linear(springs, dampers)
+    gear = np.zeros(len(whole.coordinates))
+    gear[whole.coordinates.index(follower)], gear[whole.coordinates.index(leader)] = 1.0, -factor
+    gaps = []
+    for k in (1e6, 1e8):
+        stiff = replace(whole, K_springs=whole.K_springs + k * np.outer(gear, gear))
+        slow = stiff.roots[np.argsort(np.abs(stiff.roots))][: len(system.roots)]
+        far = np.abs(slow[:, None] - system.roots).min(1)
+        gaps.append(far[np.abs(slow) > 1e-3].max())
+    assert gaps[1] < 1e-5
+    assert gaps[1] < 0.1 * gaps[0] + 1e-8
+    assert np.allclose(spin(bound, "major", pose).pose, free.pose)
+
+
+def test_locking_a_leader_or_what_follows_locks_both() -> None:
+    bound, loose = geared(0.5, 0.0)
+    leader, follower, *_ = [joint.name for joint in loose.joints]
+    names = [spin(bound, "major").linear(lock=name).coordinates for name in (leader, follower)]
+    assert names[0] == names[1]
+    assert not {leader, follower} & set(names[0])
+    assert len(joint_roots(bound, lock=leader)) == 2 * (len(loose.joints) - 2)

@@ -46,26 +46,24 @@ def coordinates(model: Model, axis: int, locked: set[int]) -> Coordinates:
     antisymmetric joint motions, the turn about the axis, symmetric ones, and what has no mirror
     image.
     """
-    count = len(model.speeds)
     before, about, after = cycle(axis)
-    turns = {i: np.eye(3 + count)[:, i] for i in range(3)}
+    turns = dict(enumerate(np.eye(3 + len(model.speeds))[:, :3].T))
+    moves = {k: np.append(np.zeros(3), column) for k, column in motions(model, locked).items()}
     called = {axis - 1: name for axis, name in zip(model.axes, _TURNS, strict=True)}
     across = sorted((before, after), key=lambda i: _FIRST.index(called[i]))
     antisymmetric: list[tuple[str, Array]] = []
     symmetric: list[tuple[str, Array]] = []
-    left = [i for i in range(count) if i not in locked]
     for pair in mirror_pairs(model):
-        if pair.left not in left or pair.right not in left:
+        if pair.left not in moves or pair.right not in moves:
             continue
-        if pair.left == pair.right:
+        one, two = moves.pop(pair.left), moves.pop(pair.right, None)
+        if two is None:
             group = symmetric if pair.sign > 0 else antisymmetric
-            group.append((pair.name, _unit(count, pair.left)))
+            group.append((pair.name, one))
         else:
-            one, two = _unit(count, pair.left), pair.sign * _unit(count, pair.right)
-            antisymmetric.append((f"antisymmetric {pair.name}", one - two))
-            symmetric.append((f"symmetric {pair.name}", one + two))
-        left = [i for i in left if i not in (pair.left, pair.right)]
-    alone = [(model.speeds[i], _unit(count, i)) for i in left]
+            antisymmetric.append((f"antisymmetric {pair.name}", one - pair.sign * two))
+            symmetric.append((f"symmetric {pair.name}", one + pair.sign * two))
+    alone = [(model.speeds[k], column) for k, column in moves.items()]
     ahead = [(called[i], turns[i]) for i in across]
     listed = [*ahead, *antisymmetric, (called[about], turns[about]), *symmetric, *alone]
     names = [name for name, _ in listed]
@@ -73,8 +71,25 @@ def coordinates(model: Model, axis: int, locked: set[int]) -> Coordinates:
     return Coordinates(tuple(names), np.column_stack([c for _, c in listed]), places)
 
 
-def _unit(count: int, speed: int) -> Array:
-    return np.eye(3 + count)[:, 3 + speed]
+def motions(model: Model, locked: set[int]) -> dict[int, Array]:
+    """How all joint speeds move with each that is free, (speeds,), by its place.
+
+    A joint that follows another moves with its leader, and is locked with it.
+    """
+    columns = np.eye(len(model.speeds))
+    bound = set(locked)
+    for joint in model.joints:
+        if joint.follows is not None:
+            (own,) = _places(model, joint.name)
+            (leader,) = _places(model, joint.follows.leader)
+            columns[own, leader] = joint.follows.factor
+            bound |= {own} if own not in locked else {own, leader}
+    return {k: columns[:, k] for k in range(len(columns)) if k not in bound}
+
+
+def _places(model: Model, joint: str) -> range:
+    own = model.speed_slice(joint)
+    return range(own.start, own.stop)
 
 
 def locked_speeds(model: Model, lock: str | Iterable[str]) -> set[int]:
@@ -107,6 +122,5 @@ def locked_speeds(model: Model, lock: str | Iterable[str]) -> set[int]:
         names = [joint.name for joint in model.joints]
     places: set[int] = set()
     for name in spread(model, dict.fromkeys(names, 0.0), mirrored=False):
-        own = model.speed_slice(name)
-        places |= set(range(own.start, own.stop))
+        places |= set(_places(model, name))
     return places

@@ -127,9 +127,9 @@ def _system(
     require_inertia(model, about.inertias)
     index = _one_axis(model, about.inertias, axis)
     steady = steady_matrices(model, q, about.axes[..., index], names, values)
-    _require_definite(model, steady.mass)
     chosen = coordinates(model, index + 1, locked_speeds(model, lock))
     mass, gyric, of_spin = (chosen.transformed(a) for a in steady.in_axes(about.axes))
+    _require_definite(model, mass)
     none = np.zeros(len(model.speeds))
     springs, dampers = (
         chosen.of_joints(strengths(model, kind, kinds[kind], steady.outboard, none))

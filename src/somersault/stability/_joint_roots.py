@@ -13,7 +13,7 @@ from somersault._core.errors import SomersaultError
 from somersault.dynamics import Equations
 from somersault.model import Model, load
 from somersault.model import pose as posed
-from somersault.stability._coordinates import locked_speeds
+from somersault.stability._coordinates import locked_speeds, motions
 from somersault.stability._gyric import Attitude, GyricSystem
 from somersault.stability._springs import strengths
 
@@ -68,24 +68,22 @@ def joint_roots(
     q = posed(model, pose)
     if q.ndim != 1:
         raise SomersaultError("these are the roots of one pose; ask for one after the other")
-    whole = Equations(model).mass_matrix(q)
-    locked = locked_speeds(model, lock)
-    free = [k for k in range(len(model.speeds)) if k not in locked]
     none = np.zeros(len(model.speeds))
     springs = strengths(model, "stiffness", by_name("stiffness", stiffness), none + 1, none)
     dampers = strengths(model, "damping", by_name("damping", damping), none + 1, none)
-    return GyricSystem(
-        tuple(model.speeds[k] for k in free),
-        _over_joints(model, whole)[np.ix_(free, free)],
-        np.zeros((len(free), len(free))),
-        np.diag(dampers[free]),
-        np.diag(springs[free]),
-        Attitude(None, None, None),
-    ).roots()
+    moves = motions(model, locked_speeds(model, lock))
+    columns = np.array([*moves.values()]).reshape(len(moves), len(none)).T
+    mass, damped, sprung = (
+        columns.T @ a @ columns
+        for a in (_over_joints(model, q), np.diag(dampers), np.diag(springs))
+    )
+    names = tuple(model.speeds[k] for k in moves)
+    attitude = Attitude(None, None, None)
+    return GyricSystem(names, mass, np.zeros_like(mass), damped, sprung, attitude).roots()
 
 
-def _over_joints(model: Model, mass: Array) -> Array:
+def _over_joints(model: Model, q: Array) -> Array:
     """The mass matrix over joint speeds of a body whose base moves as the joints make it."""
-    base = 6 if model.free else 0
-    coupling = mass[:base, base:]
-    return mass[base:, base:] - coupling.T @ np.linalg.solve(mass[:base, :base], coupling)
+    whole, base = Equations(model).mass_matrix(q), 6 if model.free else 0
+    coupling = whole[:base, base:]
+    return whole[base:, base:] - coupling.T @ np.linalg.solve(whole[:base, :base], coupling)

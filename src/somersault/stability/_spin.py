@@ -12,6 +12,7 @@ from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.model import Model, load
 from somersault.model import pose as posed
+from somersault.stability._coordinates import coordinates
 from somersault.stability._principal import (
     Axis,
     axis_index,
@@ -68,7 +69,8 @@ def spin(
     require_inertia(model, about.inertias)
     index = axis_index(about.inertias, or_somersault(model, axis))
     steady = steady_matrices(model, q, about.axes[:, index])
-    _require_independent(model, steady.mass)
+    mass, gyric, stiffness = steady.in_axes(about.axes)
+    _require_independent(model, coordinates(model, index + 1, set()).transformed(mass))
     return Spin(
         model,
         index + 1,
@@ -77,7 +79,9 @@ def spin(
         about.axes,
         MappingProxyType(dict(zip(model.speeds, steady.holding.tolist(), strict=True))),
         MappingProxyType(dict(zip(model.speeds, steady.outboard.tolist(), strict=True))),
-        *steady.in_axes(about.axes),
+        mass,
+        gyric,
+        stiffness,
     )
 
 
