@@ -16,17 +16,57 @@ Kind = Literal["minor", "major", "separatrix"]
 
 
 def euler_rates(inertias: ArrayLike, omega: ArrayLike) -> Array:
-    """ω̇ (…, 3), rad/s², of a free body with inertias (…, 3) at ω (…, 3): eq. 2.1."""
+    """Angular acceleration of a free rigid body: Euler's equations (Playter 1994, eq. 2.1).
+
+    Parameters
+    ----------
+    inertias : array_like, shape (..., 3)
+        Principal inertias, kg m².
+    omega : array_like, shape (..., 3)
+        Angular velocity in the principal axes, rad/s.
+
+    Returns
+    -------
+    numpy.ndarray, shape (..., 3)
+        ω̇ in the same axes, rad/s².
+
+    Examples
+    --------
+    >>> from somersault.rigid import euler_rates
+    >>> euler_rates([3.0, 2.0, 1.0], [0.1, 5.0, 0.2]).round(3).tolist()
+    [0.333, -0.02, 0.5]
+    """
     i, w = np.asarray(inertias, float), np.asarray(omega, float)
     return np.cross(i * w, w) / i
 
 
 def energy_bounds(inertias: ArrayLike, momentum: float) -> tuple[float, float, float]:
-    """Least, separatrix and greatest energy, J, at an angular momentum h, kg m²/s.
+    """Least, separatrix and greatest energy of rotation that an angular momentum allows.
 
-    h²/2I of the spins about the major, middle and minor axes (section 2.5).
+    They are h²/2I of the spins about the major, middle and minor axes (Playter 1994, section 2.5).
 
-    Raises `SomersaultError` for inertias that no body has or a momentum that is not positive.
+    Parameters
+    ----------
+    inertias : array_like, shape (3,)
+        Principal inertias in any order, kg m².
+    momentum : float
+        Magnitude h of the angular momentum, kg m²/s.
+
+    Returns
+    -------
+    least, separatrix, greatest : float
+        J.
+
+    Raises
+    ------
+    SomersaultError
+        For inertias that no body has or a momentum that is not positive.
+
+    Examples
+    --------
+    >>> from somersault.rigid import energy_bounds
+    >>> energy_bounds([4.0, 2.5, 2.0], 2.0)
+    (0.5, 0.8, 1.0)
     """
     checked = np.sort(checked_inertias(inertias))
     if not (np.isfinite(momentum) and momentum > 0):
@@ -38,14 +78,37 @@ def energy_bounds(inertias: ArrayLike, momentum: float) -> tuple[float, float, f
 
 
 def kind_of_motion(inertias: ArrayLike, omega: ArrayLike, tolerance: float = 0.0) -> Kind:
-    """Which principal axis the angular momentum circles, as seen from the body (section 2.5).
+    """Which principal axis the angular momentum circles, as seen from the body.
 
-    "minor": T > h²/2I_mid, "major": T < h²/2I_mid, "separatrix": equal to within `tolerance`,
-    relatively. Where axis 3 is the axis circled, twist is monotonic, elsewhere it oscillates.
-    Spins about the middle axis and about the equator of a symmetric body are on the separatrix;
-    so is everything that a spherical body does. The comparison is made without rounding.
+    Where axis 3 is the axis circled, twist is monotonic, elsewhere it oscillates (Playter 1994,
+    section 2.5). Spins about the middle axis and about the equator of a symmetric body are on the
+    separatrix; so is everything that a spherical body does. The comparison is made without
+    rounding.
 
-    Raises `SomersaultError` for inertias that no body has or an ω (3,) that is zero or not finite.
+    Parameters
+    ----------
+    inertias : array_like, shape (3,)
+        Principal inertias in any order, kg m².
+    omega : array_like, shape (3,)
+        Angular velocity in the principal axes, rad/s.
+    tolerance : float
+        How far T and h²/2I_mid may be apart, relatively, to count as equal.
+
+    Returns
+    -------
+    {"minor", "major", "separatrix"}
+        "minor" for T > h²/2I_mid, "major" for T < h²/2I_mid.
+
+    Raises
+    ------
+    SomersaultError
+        For inertias that no body has or an angular velocity that is zero or not finite.
+
+    Examples
+    --------
+    >>> from somersault.rigid import kind_of_motion
+    >>> kind_of_motion([11.0, 10.5, 0.8], [0.1, 1.0, 5.0])
+    'minor'
     """
     checked, rates = checked_inertias(inertias), checked_omega(omega)
     excess, squared = excess_energy(checked, rates)

@@ -13,6 +13,7 @@ from somersault import attitude
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.rigid._euler import Kind, checked_omega, kind_of_motion
+from somersault.rigid._given import checked_times, fixed, unit_quaternion
 from somersault.rigid._inertia import checked_inertias
 from somersault.rigid._map import tilt_and_twist
 from somersault.rigid._orbit import Orbit, orbit
@@ -27,22 +28,38 @@ _STEP = 0.02  # rad of turning between samples where turns are counted along the
 
 @dataclass(frozen=True, eq=False, init=False)
 class RigidMotion:
-    """Torque-free motion of a body with principal inertias about its axes, from t = 0 on.
+    """Torque-free motion of a rigid body, exactly (Playter 1994, appendix A.4).
 
     Any order of the inertias and any direction of the angular momentum; both kinds of
     motion, the separatrix, symmetric and spherical bodies and pure spins. Times may have any
     shape and sign; errors are those of rounding and grow in proportion to the angle turned.
 
-    Raises `SomersaultError` for inertias that no body has, an ω that is zero or not finite
-    and an attitude that is no quaternion.
+    Parameters
+    ----------
+    inertias : array_like, shape (3,)
+        Principal inertias I1, I2, I3 about the body's axes, kg m².
+    omega0 : array_like, shape (3,)
+        Angular velocity at t = 0 in body axes, rad/s.
+    attitude0 : array_like, shape (4,)
+        Quaternion at t = 0, body to inertial, of any length.
+
+    Raises
+    ------
+    SomersaultError
+        For inertias that no body has, an angular velocity that is zero or not finite, and an
+        attitude that is no quaternion.
+
+    Examples
+    --------
+    >>> from somersault.rigid import RigidMotion
+    >>> book = RigidMotion([3.0, 2.0, 1.0], [0.01, 5.0, 0.0])
+    >>> book.kind, round(book.period, 2)
+    ('major', 9.77)
     """
 
     inertias: Array
-    """I1, I2, I3 (3,), kg m²."""
     omega0: Array
-    """ω at t = 0 in body axes (3,), rad/s."""
     attitude0: Array
-    """Unit quaternion (4,) at t = 0, body to inertial."""
 
     def __init__(
         self,
@@ -51,19 +68,40 @@ class RigidMotion:
         attitude0: ArrayLike = (1.0, 0.0, 0.0, 0.0),
     ) -> None:
         put = object.__setattr__  # the class is frozen
-        put(self, "inertias", _fixed(checked_inertias(inertias)))
-        put(self, "omega0", _fixed(checked_omega(omega0)))
-        put(self, "attitude0", _fixed(_unit_quaternion(attitude0)))
+        put(self, "inertias", fixed(checked_inertias(inertias)))
+        put(self, "omega0", fixed(checked_omega(omega0)))
+        put(self, "attitude0", fixed(unit_quaternion(attitude0)))
 
     @classmethod
     def from_momentum(
         cls, inertias: ArrayLike, momentum: ArrayLike, attitude0: ArrayLike = (1.0, 0.0, 0.0, 0.0)
     ) -> RigidMotion:
-        """From the angular momentum in inertial axes (3,), kg m²/s, and the attitude (4,).
+        """A motion from its angular momentum in inertial axes.
 
-        A single number is angular momentum along inertial axis 2, as A.4 has it.
+        Parameters
+        ----------
+        inertias : array_like, shape (3,)
+            Principal inertias, kg m².
+        momentum : array_like, shape (3,), or float
+            Angular momentum in inertial axes, kg m²/s. A number is along inertial axis 2, as A.4
+            has it.
+        attitude0 : array_like, shape (4,)
+            Quaternion at t = 0, body to inertial.
 
-        Raises `SomersaultError` as the class does, and for a momentum that is not finite.
+        Returns
+        -------
+        RigidMotion
+
+        Raises
+        ------
+        SomersaultError
+            As the class does, and for a momentum that is not finite.
+
+        Examples
+        --------
+        >>> from somersault.rigid import RigidMotion
+        >>> RigidMotion.from_momentum([3.0, 2.0, 1.0], 4.0).omega0.tolist()
+        [0.0, 2.0, 0.0]
         """
         given = np.asarray(momentum, float)
         h = np.array([0.0, float(given), 0.0]) if given.ndim == 0 else given
@@ -72,7 +110,7 @@ class RigidMotion:
                 f"The angular momentum must be one or three finite numbers in kg m²/s, "
                 f"not {momentum!r}."
             )
-        turn = attitude.matrix_from_quaternion(_unit_quaternion(attitude0))
+        turn = attitude.matrix_from_quaternion(unit_quaternion(attitude0))
         checked = checked_inertias(inertias)
         return cls(checked, h @ turn / checked, attitude0)
 
@@ -150,8 +188,25 @@ class RigidMotion:
         return float(tilt_and_twist(self.omega(times) * self.inertias)[0].mean())
 
     def omega(self, t: ArrayLike) -> Array:
-        """ω (…, 3) in body axes, rad/s, at times t (…), s: A.8 to A.17."""
-        times = _times(t)
+        """Angular velocity (Playter 1994, A.8 to A.17).
+
+        Parameters
+        ----------
+        t : array_like
+            Times, s.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., 3)
+            In body axes, rad/s.
+
+        Examples
+        --------
+        >>> from somersault.rigid import RigidMotion
+        >>> RigidMotion([3.0, 2.0, 1.0], [0.0, 5.0, 0.0]).omega([0.0, 1.0]).tolist()
+        [[0.0, 5.0, 0.0], [0.0, 5.0, 0.0]]
+        """
+        times = checked_times(t)
         path = self._orbit
         if path is None:
             return np.broadcast_to(self.omega0, (*times.shape, 3)).copy()
@@ -159,12 +214,29 @@ class RigidMotion:
         return path.omega(at) * path.flips(at)
 
     def quaternion(self, t: ArrayLike) -> Array:
-        """Attitude (…, 4), body to inertial, at times t (…), s.
+        """Attitude as unit quaternions, body to inertial.
 
-        Continuous in time, so its sign is that of the given attitude at t = 0 and may
+        They are continuous in time, so their sign is that of the given attitude at t = 0 and may
         become either.
+
+        Parameters
+        ----------
+        t : array_like
+            Times, s.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., 4)
+            Scalar first.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from somersault.rigid import RigidMotion
+        >>> RigidMotion([3.0, 2.0, 1.0], [0.0, 1.0, 0.0]).quaternion(np.pi).round(3).tolist()
+        [0.0, 0.0, 1.0, 0.0]
         """
-        times = _times(t)
+        times = checked_times(t)
         if self._precession is None:
             return attitude.quaternion_product(self.attitude0, self._steady_turn(times))
         begin = self._precession.quaternion(np.zeros(()))
@@ -172,13 +244,34 @@ class RigidMotion:
         return attitude.quaternion_product(frame, self._precession.quaternion(times))
 
     def angles(self, t: ArrayLike) -> Array:
-        """(Φ, Θ, Ψ) (…, 3) in the given inertial axes at times t (…), continuous from t = 0.
+        """Somersault, tilt and twist in the given inertial axes, continuous from t = 0 on.
 
-        With h along inertial 2 (either way) in closed form. With h elsewhere from
-        `quaternion`, and whole turns are counted along the path: see
+        With the angular momentum along inertial axis 2 (either way) they are in closed form. With
+        it elsewhere they are those of `quaternion`, and whole turns are counted along the path: see
         `attitude.unwrapped_angles`, also for how tilt runs through ±π/2.
+
+        Parameters
+        ----------
+        t : array_like
+            Times, s.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., 3)
+            (Φ, Θ, Ψ), rad.
+
+        Raises
+        ------
+        SomersaultError
+            For times that are not finite, and those beyond which turns can no longer be counted.
+
+        Examples
+        --------
+        >>> from somersault.rigid import RigidMotion
+        >>> RigidMotion([3.0, 2.0, 1.0], [0.0, 5.0, 0.0]).angles(2.0).tolist()
+        [10.0, 0.0, 0.0]
         """
-        times = _times(t)
+        times = checked_times(t)
         h = self.momentum
         if math.hypot(h[0], h[2]) > _ALONG * abs(h[1]):
             return self._counted(times)
@@ -191,14 +284,31 @@ class RigidMotion:
         return found
 
     def momentum_angles(self, t: ArrayLike) -> Array:
-        """(Φ, Θ, Ψ) (…, 3) about the angular momentum at times t (…), in closed form: A.19–A.33.
+        """Somersault, tilt and twist about the angular momentum, in closed form (A.19 to A.33).
 
         The inertial axes are the given ones turned the shortest way that brings axis 2 onto
         the angular momentum (by a half turn about 3 if it points along −2). Θ and Ψ are
         where h stands on the momentum sphere, Φ its precession; all are continuous and at
         t = 0 in [−π, π].
+
+        Parameters
+        ----------
+        t : array_like
+            Times, s.
+
+        Returns
+        -------
+        numpy.ndarray, shape (..., 3)
+            (Φ, Θ, Ψ), rad.
+
+        Examples
+        --------
+        >>> from somersault.rigid import RigidMotion
+        >>> tilted = RigidMotion([2.0, 2.0, 1.0], [0.0, 1.0, -0.5])
+        >>> tilted.momentum_angles(0.0).round(3).tolist()
+        [0.0, 0.245, 0.0]
         """
-        times = _times(t)
+        times = checked_times(t)
         unaligned = attitude.quaternion_conjugate(_shortest_from_2(self.momentum))
         start = attitude.quaternion_product(unaligned, self.attitude0)
         first = attitude.angles_from_quaternion(start)
@@ -213,7 +323,15 @@ class RigidMotion:
     def twists_per_somersault_quadrature(self) -> float:
         """`twists_per_somersault` by numerical integration of A.22, with no elliptic function.
 
-        Raises `SomersaultError` for a constant ω and on the separatrix, which have no period.
+        Returns
+        -------
+        float
+            Zero where twist only oscillates; positive twist is about +3.
+
+        Raises
+        ------
+        SomersaultError
+            For a constant angular velocity and on the separatrix, which have no period.
         """
         path = self._orbit
         if path is None or path.kc == 0:
@@ -263,29 +381,6 @@ class RigidMotion:
             angles = attitude.unwrapped_angles(self.quaternion(signed))
             found[side] = angles[np.searchsorted(path, np.abs(flat[side]))]
         return found.reshape(*times.shape, 3)
-
-
-def _fixed(values: Array) -> Array:
-    copy = np.array(values, float)
-    copy.flags.writeable = False
-    return copy
-
-
-def _times(t: ArrayLike) -> Array:
-    times = np.asarray(t, float)
-    if not np.all(np.isfinite(times)):
-        raise SomersaultError("Times must be finite numbers in seconds; remove the others first.")
-    return times
-
-
-def _unit_quaternion(given: ArrayLike) -> Array:
-    found = np.asarray(given, float)
-    size = float(np.linalg.norm(found)) if found.shape == (4,) else math.nan
-    if not (math.isfinite(size) and size > 0):
-        raise SomersaultError(
-            f"The attitude must be a quaternion [w, x, y, z] of finite numbers, not {given!r}."
-        )
-    return found / size
 
 
 def _shortest_from_2(direction: Array) -> Array:

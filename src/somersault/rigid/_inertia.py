@@ -37,9 +37,29 @@ def checked_inertias(inertias: ArrayLike) -> Array:
 
 
 def inertia_ratios(I1: ArrayLike, I2: ArrayLike, I3: ArrayLike) -> tuple[Array, Array]:
-    """k1 = (I2 − I3)/I1 and k3 = (I2 − I1)/I3 (…), from inertias (…) in kg m².
+    """Inertia ratios k1 = (I2 − I3)/I1 and k3 = (I2 − I1)/I3 (Playter 1994, section 2.3.2).
 
-    Raises `SomersaultError` where an inertia is not positive.
+    Parameters
+    ----------
+    I1, I2, I3 : array_like
+        Principal inertias, kg m², which broadcast; the spin is about axis 2.
+
+    Returns
+    -------
+    k1, k3 : numpy.ndarray
+        Of the shape to which the inertias broadcast, without dimension.
+
+    Raises
+    ------
+    SomersaultError
+        Where an inertia is not positive.
+
+    Examples
+    --------
+    >>> from somersault.rigid import inertia_ratios
+    >>> k1, k3 = inertia_ratios(11.0, 10.5, 0.8)
+    >>> print(f"{k1:.3f} {k3:.3f}")
+    0.882 -0.625
     """
     one, two, three = np.broadcast_arrays(*(np.asarray(i, float) for i in (I1, I2, I3)))
     if not np.all((one > 0) & (two > 0) & (three > 0)):
@@ -48,10 +68,29 @@ def inertia_ratios(I1: ArrayLike, I2: ArrayLike, I3: ArrayLike) -> tuple[Array, 
 
 
 def inertias_from_ratios(k1: ArrayLike, k3: ArrayLike) -> Array:
-    """(I1, I2, I3)/I2 (…, 3) of the bodies with ratios k1 and k3 (…): `inertia_ratios` inverted.
+    """The inertias that have given ratios, over I2: the inverse of `inertia_ratios`.
 
-    Raises `SomersaultError` outside −1 < k < 1, where there is no body (one of the ratios
-    may be ±1: a flat body or a needle).
+    Parameters
+    ----------
+    k1, k3 : array_like
+        Inertia ratios, which broadcast.
+
+    Returns
+    -------
+    numpy.ndarray, shape (..., 3)
+        (I1, I2, I3)/I2.
+
+    Raises
+    ------
+    SomersaultError
+        Outside −1 < k < 1, where there is no body (one of the ratios may be ±1: a flat body or a
+        needle).
+
+    Examples
+    --------
+    >>> from somersault.rigid import inertias_from_ratios
+    >>> inertias_from_ratios(0.5, -0.5).tolist()
+    [1.2, 1.0, 0.4]
     """
     a, b = np.broadcast_arrays(np.asarray(k1, float), np.asarray(k3, float))
     if not np.all((np.abs(a) <= 1) & (np.abs(b) <= 1) & (a * b < 1) & (a < 1) & (b < 1)):
@@ -60,10 +99,27 @@ def inertias_from_ratios(k1: ArrayLike, k3: ArrayLike) -> Array:
 
 
 def quadrant(k1: ArrayLike, k3: ArrayLike) -> Array:
-    """Quadrant (…) of the inertia ratio diagram, 1 to 4, and 0 on its axes (figure 2-2).
+    """Quadrant of the inertia ratio diagram (Playter 1994, figure 2-2).
 
-    1: I2 is the largest, statically stable. 3: I2 is the smallest, gyrically stable. 2
-    (I1 < I2 < I3) and 4 (I3 < I2 < I1, the layout): the middle axis, unstable.
+    In quadrant 1 I2 is the largest inertia and the spin statically stable; in 3 it is the smallest
+    and the spin gyrically stable. In 2 (I1 < I2 < I3) and 4 (I3 < I2 < I1, the layout) the spin is
+    about the middle axis and unstable.
+
+    Parameters
+    ----------
+    k1, k3 : array_like
+        Inertia ratios, which broadcast.
+
+    Returns
+    -------
+    numpy.ndarray of int
+        1 to 4, and 0 on the axes of the diagram.
+
+    Examples
+    --------
+    >>> from somersault.rigid import quadrant
+    >>> quadrant([0.7, 0.7], [0.5, -0.9]).tolist()
+    [1, 4]
     """
     a, b = np.sign(np.asarray(k1, float)), np.sign(np.asarray(k3, float))
     inside = np.where(b > 0, np.where(a > 0, 1, 2), np.where(a > 0, 4, 3))
@@ -71,11 +127,30 @@ def quadrant(k1: ArrayLike, k3: ArrayLike) -> Array:
 
 
 def growth_angle(k1: ArrayLike, k3: ArrayLike, N: float = 10.0) -> Array:
-    """Somersault angle (…), rad, in which the unstable mode grows by a factor N: eq. 2.14.
+    """Somersault angle in which the unstable mode grows by a factor (Playter 1994, eq. 2.14).
 
-    Infinite where k1 k3 ≥ 0: no mode grows exponentially there.
+    Parameters
+    ----------
+    k1, k3 : array_like
+        Inertia ratios, which broadcast.
+    N : float
+        The factor, above 1.
 
-    Raises `SomersaultError` unless N > 1.
+    Returns
+    -------
+    numpy.ndarray
+        rad; infinite where k1 k3 ≥ 0, because no mode grows exponentially there.
+
+    Raises
+    ------
+    SomersaultError
+        Unless N > 1.
+
+    Examples
+    --------
+    >>> from somersault.rigid import growth_angle
+    >>> round(float(growth_angle(0.687, -0.876)), 2)
+    2.97
     """
     if not N > 1:
         raise SomersaultError(f"A mode that grows has a factor N above 1, not {N}.")

@@ -20,16 +20,40 @@ _ROUNDING = 1e-12  # by how much, relatively, an energy may miss its bounds
 def energy_curve(
     inertias: ArrayLike, energy: float, points: int = 361, momentum: float = 1.0
 ) -> Array:
-    """Both closed pieces of the curve of one energy on the momentum sphere (2, points, 3).
+    """Both closed pieces of the curve of one energy on the momentum sphere.
 
-    Energy in J at an angular momentum in kg m²/s. The first piece is on the positive side of
-    the axis it goes round: the minor one above the energy of the separatrix, the major one
-    below. Each ends where it starts. On the separatrix the pieces meet on the middle axis
-    with corners; `separatrix` has them as the two circles they are. At the least and the
-    greatest energy each piece is one point, repeated.
+    The first piece is on the positive side of the axis it goes round: the minor one above the
+    energy of the separatrix, the major one below. Each ends where it starts. On the separatrix the
+    pieces meet on the middle axis with corners; `separatrix` has them as the two circles they are.
+    At the least and the greatest energy each piece is one point, repeated.
 
-    Raises `SomersaultError` for an energy that the momentum does not allow, and for a
-    spherical body, which has one energy everywhere.
+    Parameters
+    ----------
+    inertias : array_like, shape (3,)
+        Principal inertias, kg m².
+    energy : float
+        Of rotation, J: within `energy_bounds`.
+    points : int
+        How many points each piece has.
+    momentum : float
+        Magnitude of the angular momentum, kg m²/s.
+
+    Returns
+    -------
+    numpy.ndarray, shape (2, points, 3)
+        Direction cosines of the angular momentum in the principal axes.
+
+    Raises
+    ------
+    SomersaultError
+        For an energy that the momentum does not allow, and for a spherical body, which has one
+        energy everywhere.
+
+    Examples
+    --------
+    >>> from somersault.rigid import energy_curve
+    >>> energy_curve([4.0, 2.5, 2.0], 0.22, points=5)[0].round(2).tolist()[0]
+    [0.49, 0.0, 0.87]
     """
     i = checked_inertias(inertias)
     least, middle, greatest = energy_bounds(i, momentum)
@@ -57,13 +81,35 @@ def energy_curve(
 
 
 def separatrix(inertias: ArrayLike, points: int = 361) -> Array:
-    """The two great circles of the separatrix (2, points, 3), each from the middle axis round.
+    """The two great circles of the separatrix on the momentum sphere.
 
-    They cross on the middle axis b, in planes at ±δ from the minor axis towards the major
-    one, tan² δ = (1/I_min − 1/I_mid)/(1/I_mid − 1/I_max). For a symmetric body they are one
-    circle, its equator.
+    They cross on the middle axis, in planes at ±δ from the minor axis towards the major one,
+    tan² δ = (1/I_min − 1/I_mid)/(1/I_mid − 1/I_max). For a symmetric body they are one circle, its
+    equator.
 
-    Raises `SomersaultError` for a spherical body, which has no separatrix.
+    Parameters
+    ----------
+    inertias : array_like, shape (3,)
+        Principal inertias, kg m².
+    points : int
+        How many points each circle has.
+
+    Returns
+    -------
+    numpy.ndarray, shape (2, points, 3)
+        Direction cosines of the angular momentum in the principal axes; each circle starts and ends
+        at the middle axis.
+
+    Raises
+    ------
+    SomersaultError
+        For a spherical body, which has no separatrix.
+
+    Examples
+    --------
+    >>> from somersault.rigid import separatrix
+    >>> separatrix([3.0, 2.0, 1.0], points=5)[0, 0].tolist()
+    [0.0, 1.0, 0.0]
     """
     i = checked_inertias(inertias)
     _not_spherical(i)
@@ -78,17 +124,54 @@ def separatrix(inertias: ArrayLike, points: int = 361) -> Array:
 
 
 def tilt_and_twist(cosines: ArrayLike) -> tuple[Array, Array]:
-    """Θ and Ψ (…), rad, of points (…, 3) on the sphere: A.20 and A.21 with their signs.
+    """Tilt and twist of points on the momentum sphere (Playter 1994, A.20 and A.21, signs mended).
 
     Tilt is minus the latitude above the 1-2 plane; twist is minus the longitude, counted
     from axis 2 and positive about axis 3 (figure 2-8).
+
+    Parameters
+    ----------
+    cosines : array_like, shape (..., 3)
+        Direction of the angular momentum in body axes, of any length.
+
+    Returns
+    -------
+    tilt, twist : numpy.ndarray, shape (...)
+        rad: Θ in [−π/2, π/2], Ψ in (−π, π].
+
+    Examples
+    --------
+    >>> from somersault.rigid import tilt_and_twist
+    >>> tilt, twist = tilt_and_twist([0.0, 1.0, -1.0])
+    >>> print(f"{tilt:.4f} {twist:.4f}")
+    0.7854 0.0000
     """
     c1, c2, c3 = np.moveaxis(np.asarray(cosines, float), -1, 0)
     return np.arctan2(-c3, np.hypot(c1, c2)), np.arctan2(c1, c2)
 
 
 def momentum_direction(tilt: ArrayLike, twist: ArrayLike) -> Array:
-    """Direction cosines (…, 3) of h along inertial 2 in body axes: the second column of C_bi."""
+    """Direction in body axes of an angular momentum along inertial axis 2.
+
+    It is the second column of C_bi (Playter 1994, eq. 2.2), and the inverse of `tilt_and_twist`.
+
+    Parameters
+    ----------
+    tilt, twist : array_like
+        rad, which broadcast.
+
+    Returns
+    -------
+    numpy.ndarray, shape (..., 3)
+        Direction cosines.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from somersault.rigid import momentum_direction
+    >>> momentum_direction(0.0, np.pi / 2).round(3).tolist()
+    [1.0, 0.0, -0.0]
+    """
     t, w = np.broadcast_arrays(np.asarray(tilt, float), np.asarray(twist, float))
     return np.stack([np.sin(w) * np.cos(t), np.cos(w) * np.cos(t), -np.sin(t)], -1)
 

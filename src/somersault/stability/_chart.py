@@ -70,7 +70,7 @@ def growth_rates(
     --------
     >>> from somersault.stability import growth_rates
     >>> growth_rates("furrer", pose={"shoulder": 1.3}, stiffness={"shoulder": [0.5, 1.2]}).round(3)
-    array([0.292, 0.   ])
+    array([0.649, 0.   ])
     """
     by_name("quantities", quantities)
     cases = grid(model, quantities, pose, stiffness, damping, axis, lock, subsystem)
@@ -270,7 +270,7 @@ def stable_ranges(
     >>> for low, high in stable_ranges("furrer", ("stiffness.shoulder", -2, 4),
     ...                                pose={"shoulder": 1.3}):
     ...     print(f"{low:.4f} to {high:.4f}")
-    0.8940 to 1.3486
+    0.8919 to 1.3606
     """
     cases = grid(model, fixed, pose, stiffness, damping, axis, lock, subsystem)
     name, low, high = _ends(along)

@@ -111,6 +111,13 @@ def locked_speeds(model: Model, lock: str | Iterable[str]) -> set[int]:
     ------
     SomersaultError
         For a name that is no joint.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> from somersault.stability import locked_speeds
+    >>> locked_speeds(so.load("furrer"), "shoulder")
+    {0, 1}
     """
     if isinstance(lock, str):
         lock = [lock]

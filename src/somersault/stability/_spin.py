@@ -109,8 +109,8 @@ def principal_inertias(model: str | Model, pose: Mapping[str, ArrayLike] | None 
     --------
     >>> from somersault.stability import principal_inertias
     >>> principal_inertias("furrer", {"shoulder": [0.0, 1.3]}).round(2)
-    array([[13.84, 13.34,  1.15],
-           [14.53, 13.56,  1.99]])
+    array([[11.  , 10.5 ,  0.77],
+           [12.96, 11.06,  2.16]])
     """
     model = load(model)
     require_free(model)

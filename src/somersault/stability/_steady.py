@@ -102,6 +102,17 @@ def holding_torques(
         About the axis of spin, kg m².
     torques : numpy.ndarray, shape (N, speeds)
         At each joint speed, at Ω = 1 rad/s, N m (N for a slide); times Ω² at other rates.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> from somersault.model import pose
+    >>> from somersault.stability import holding_torques
+    >>> furrer = so.load("furrer")
+    >>> poses = pose(furrer, {"shoulder": [1.3]})
+    >>> inertia, torques = holding_torques(furrer, poses, compiled=False)
+    >>> inertia.round(2), torques.round(3)
+    (array([11.06]), array([[-0.31,  0.31]]))
     """
     whole = composite_inertia(model, q, parameters, values)
     before, k, after = cycle(model.axes[0])

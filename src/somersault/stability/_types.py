@@ -268,7 +268,7 @@ class LinearSpin:
         Examples
         --------
         >>> import somersault as so
-        >>> so.spin("furrer").linear().subsystem("somersault").coordinates
+        >>> so.spin("furrer", pose={"shoulder": 1.3}).linear().subsystem("somersault").coordinates
         ('somersault', 'symmetric shoulder')
         """
         place = self.system.place(coordinate)
