@@ -9,6 +9,7 @@ from scipy.linalg import eig
 
 import somersault as so
 from somersault.dynamics import Equations
+from somersault.model import pose as posed
 from somersault.thesis.ch6 import _bounded_torques as gentle
 from somersault.thesis.ch6 import _eigenfrequencies as table
 from somersault.thesis.ch6 import _landing_sensitivity as why
@@ -130,8 +131,8 @@ def test_roots_by_the_companion_matrix(pose: str) -> None:
     """Of M ẍ + C ẋ + K x = 0 over all nineteen speeds, the free base's six included."""
     model = so.load(rudi.MODEL)
     equations = Equations(model)
-    inertia = equations.outboard_inertia(table._coordinates("wrap"))
-    mass = equations.mass_matrix(table._coordinates(pose))
+    inertia = equations.outboard_inertia(posed(model, table._angles("wrap")))
+    mass = equations.mass_matrix(posed(model, table._angles(pose)))
     stiffness, damping = (np.zeros((19, 19)) for _ in range(2))
     stiffness[6:, 6:] = np.diag(900.0 * inertia)
     damping[6:, 6:] = np.diag(2 * 0.7 * 30.0 * inertia)
