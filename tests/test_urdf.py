@@ -354,10 +354,11 @@ REFUSED = {
     "has no name": robot(HUB).replace('link name="hub"', "link"),
     "has no links": '<robot name="robot"/>',
     "xacro": "<robot xmlns:xacro='x'><xacro:include filename='a'/></robot>",
+    "has no mass: no link": robot(link("hub"), link("arm"), joint("a", "hub", "arm")),
     "negative damping": robot(
         HUB, ARM, joint("a", "hub", "arm", more='<dynamics damping="-1"/>')
     ),
-    "negative mass": robot(link("hub", -1)),
+    "negative mass": robot(link("hub", -1), ARM, joint("a", "hub", "arm")),
     "line 3": "<robot>\n\n<link name='a'></robot>",
     "entity 'a'": '<!DOCTYPE r [<!ENTITY a "b">]>' + robot(HUB),
     "more than 100 levels": robot(HUB, "<a>" * 200 + "</a>" * 200),

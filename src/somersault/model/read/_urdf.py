@@ -48,6 +48,10 @@ def read_urdf(path: Path, base: Base | None = None) -> Model:
         For a file that is no robot, or none that can fly.
     """
     file = Elements(path.name, read_xml(path))
+    if not any(link.mass > 0 for link in file.links.values()):
+        raise SomersaultError(
+            f"{path.name} has no mass: no link of it has an <inertial> with one; add masses"
+        )
     order, free = _order(file, _root(file), _moving_something(file, _led(file)))
     on = rooted(path.name, _bodies(file, order), free, base)
     if not on.bodies:
