@@ -73,7 +73,7 @@ def forward_dynamics(
 
     All in the base's axes (a fixed base: the ground's, and the first two are zero). `torques`
     act at the joints, `gravity` (m/s²) on everything. `driven` holds the accelerations of the
-    joint speeds that are prescribed, by place; a ball is driven in all three or in none.
+    joint speeds that are prescribed, by their places; a ball is driven in all three or in none.
     """
     driven = driven or {}
     placed = placements(tree, q)
@@ -99,10 +99,10 @@ def _driven(link: Link, motion: Rates, driven: Mapping[int, Scalar]) -> Rates:
     """A prescribed joint's own acceleration is known, as those that rates make are."""
     if link.joint is None or link.speeds.start not in driven:
         return motion
-    own = joint_vector(link, [driven.get(k, 0.0) for k in range(link.speeds.stop)])
+    known = joint_vector(link, [driven.get(k, 0.0) for k in range(link.speeds.stop)])
     if link.joint.kind == "slide":
-        return replace(motion, pull=vadd(motion.pull, own))
-    return replace(motion, spin=vadd(motion.spin, own))
+        return replace(motion, pull=vadd(motion.pull, known))
+    return replace(motion, spin=vadd(motion.spin, known))
 
 
 def _rigid(link: Link, motion: Rates) -> _Articulated:
@@ -276,11 +276,10 @@ def _accelerations(
             alphas.append(alpha)
             accelerations.append(a)
             continue
-        own = [
+        joints[link.speeds] = [
             sub(b, add(dot(x, alpha), dot(y, a)))
             for b, x, y in zip(gain.bias, gain.alpha_rows, gain.a_rows, strict=True)
         ]
-        joints[link.speeds] = own
         vector = joint_vector(link, joints)
         alphas.append(alpha if link.joint.kind == "slide" else vadd(alpha, vector))
         accelerations.append(vadd(a, vector) if link.joint.kind == "slide" else a)

@@ -30,13 +30,13 @@ class Composite:
     """A link and all that hangs from it as one rigid body: inertia about its frame's origin."""
 
     mass: Scalar
-    first: Vec
+    first_moment: Vec
     inertia: Mat
 
     @property
     def centre(self) -> Vec:
         """Centre of mass, from the frame's origin."""
-        return scale(1.0 / self.mass, self.first)
+        return scale(1.0 / self.mass, self.first_moment)
 
     @property
     def about_centre(self) -> Mat:
@@ -45,8 +45,8 @@ class Composite:
 
     def load(self, alpha: Vec, a: Vec) -> tuple[Vec, Vec]:
         """Moment about the origin and force that accelerate it from rest."""
-        moment = vadd(matvec(self.inertia, alpha), cross(self.first, a))
-        return moment, vadd(scale(self.mass, a), cross(alpha, self.first))
+        moment = vadd(matvec(self.inertia, alpha), cross(self.first_moment, a))
+        return moment, vadd(scale(self.mass, a), cross(alpha, self.first_moment))
 
 
 def composite_bodies(tree: Tree, placed: Sequence[Placed]) -> list[Composite]:
@@ -63,12 +63,12 @@ def composite_bodies(tree: Tree, placed: Sequence[Placed]) -> list[Composite]:
         at, outer = placed[index], result[index]
         if at.link.joint is None or at.link.parent < 0:
             continue
-        first = at.turn.out(outer.first)
+        first = at.turn.out(outer.first_moment)
         inertia = at.turn.out_symmetric(outer.inertia)
         inner = result[at.link.parent]
         result[at.link.parent] = Composite(
             add(inner.mass, outer.mass),
-            vadd(inner.first, first, scale(outer.mass, at.position)),
+            vadd(inner.first_moment, first, scale(outer.mass, at.position)),
             madd(madd(inner.inertia, inertia), _moved(outer.mass, first, at.position)),
         )
     return result
@@ -165,8 +165,8 @@ def _pass_to_base(
                 matrix[row][ahead + column] = matrix[ahead + column][row] = value
             return
         load = force if link.joint.kind == "slide" else moment
-        own = load if link.joint.kind == "ball" else [mul(link.sign, load[link.axis])]
-        for row, value in enumerate(own, link.speeds.start):
+        along = load if link.joint.kind == "ball" else [mul(link.sign, load[link.axis])]
+        for row, value in enumerate(along, link.speeds.start):
             matrix[ahead + row][ahead + column] = matrix[ahead + column][ahead + row] = value
         if link.parent < 0:
             return

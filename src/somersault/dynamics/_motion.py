@@ -70,11 +70,11 @@ class Rates:
 
 def joint_vector(link: Link, values: Sequence[Scalar]) -> Vec:
     """A joint's own speeds (or accelerations) as a vector along its link's axes."""
-    own = list(values[link.speeds])
+    along = list(values[link.speeds])
     if link.joint is not None and link.joint.kind == "ball":
-        return own
+        return along
     vector: Vec = [0.0] * 3
-    vector[link.axis] = mul(link.sign, own[0])
+    vector[link.axis] = mul(link.sign, along[0])
     return vector
 
 
@@ -94,12 +94,12 @@ def rates(placed: Sequence[Placed], omega: Vec, speeds: Sequence[Scalar]) -> lis
         outer = result[link.parent].omega if link.parent >= 0 else [0.0] * 3
         carried = at.turn.into(outer)
         centripetal = at.turn.into(cross(outer, cross(outer, at.position)))
-        own = joint_vector(link, speeds)
+        relative = joint_vector(link, speeds)
         if link.joint.kind == "slide":
-            coriolis = cross(carried, own)
+            coriolis = cross(carried, relative)
             pull = vadd(centripetal, coriolis, coriolis)
             result.append(Rates(carried, [0.0] * 3, pull))
         else:
-            moving = [add(carried[k], own[k]) for k in range(3)]
-            result.append(Rates(moving, cross(carried, own), centripetal))
+            moving = [add(carried[k], relative[k]) for k in range(3)]
+            result.append(Rates(moving, cross(carried, relative), centripetal))
     return result

@@ -56,12 +56,12 @@ def inverse_dynamics(
         else:
             outer = alphas[link.parent] if link.parent >= 0 else list(alpha)
             carried = origins[link.parent] if link.parent >= 0 else list(acceleration)
-            own = joint_vector(link, joint_accelerations)
+            relative = joint_vector(link, joint_accelerations)
             turned = vadd(at.turn.into(outer), motion.spin)
             moved = vadd(at.turn.into(vadd(carried, cross(outer, at.position))), motion.pull)
             slides = link.joint.kind == "slide"
-            alphas.append(turned if slides else vadd(turned, own))
-            origins.append(vadd(moved, own) if slides else moved)
+            alphas.append(turned if slides else vadd(turned, relative))
+            origins.append(vadd(moved, relative) if slides else moved)
         loads.append(_inertial_load(link, motion.omega, alphas[-1], origins[-1]))
     torques: list[Scalar] = [0.0] * len(joint_accelerations)
     for index in range(len(loads) - 1, -1, -1):

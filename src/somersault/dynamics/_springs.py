@@ -25,8 +25,8 @@ def torques(
     result: list[Scalar] = []
     for joint in model.joints:
         numbers = (_number(joint, kind, symbols) for kind in _KINDS)
-        own = q[model.coordinate_slice(joint.name)]
-        result += spring_torques(joint, own, speeds[model.speed_slice(joint.name)], *numbers)
+        angles = q[model.coordinate_slice(joint.name)]
+        result += spring_torques(joint, angles, speeds[model.speed_slice(joint.name)], *numbers)
     return result
 
 

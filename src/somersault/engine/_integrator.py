@@ -21,7 +21,7 @@ from somersault.engine._step import (
     Rows,
     renew,
     step,
-)  # fmt: skip
+)
 from somersault.engine._threads import pool, threads
 from somersault.engine._vectors import LANES, module
 
@@ -39,10 +39,22 @@ _FIRST_STEP = 1e-3  # s; what it is costs a step or two
 class Solution:
     """What became of N starts at K sample times.
 
-    `states` (N, K, n): at the samples; after a lane has ended, its last state. `end` (N,) is
-    when it ended, `final` (N, n) its state then, `status` (N,) a code of `STATUS`, `steps`
-    (N,) how many it took. `watched` (N, K, w) and `watched_final` (N, w) are what was watched
-    until then.
+    Attributes
+    ----------
+    states : array (N, K, n)
+        At the samples; after a flight has ended, its last state.
+    end : array (N,)
+        When each ended.
+    final : array (N, n)
+        Its state then.
+    status : array (N,)
+        A code of `STATUS`.
+    steps : array (N,)
+        How many it took.
+    watched : array (N, K, w)
+        What was watched until each sample.
+    watched_final : array (N, w)
+        The same until the end.
     """
 
     states: Array
@@ -66,11 +78,28 @@ class Pieces:
 class Integrator:
     """DOP853 for one right-hand side, compiled when it is first used.
 
-    `slope` is a CasADi function of one vector (state, time, parameters) that gives the
-    state's rate; `gauge`, of the same vector, a number whose change of sign ends a flight.
-    `watch` gives the watched numbers after a step from `Rows.look`, and `longest`, of the first
-    vector, bounds each step while something is watched. The first `changing` parameters are those
-    of `Pieces`.
+    Parameters
+    ----------
+    slope
+        A CasADi function of one vector (state, time, parameters) that gives the state's rate.
+    gauge
+        Of the same vector, a number whose change of sign ends a flight.
+    watch
+        The watched numbers after a step, from the numbers of `Rows.look`.
+    longest
+        Of the vector of `slope`, a bound on each step while something is watched.
+    changing
+        How many parameters, the first ones, are those of `Pieces`.
+
+    Examples
+    --------
+    >>> import casadi as ca
+    >>> import numpy as np
+    >>> x = ca.SX.sym("x", 3)  # y, the time, and a rate
+    >>> decay = Integrator(ca.Function("slope", [x], [-x[2] * x[0]]))
+    >>> decay.solve(np.ones((1, 1)), np.array([[2.0]]), np.array([0.0, 0.5]), 1e-12).states.round(6)
+    array([[[1.      ],
+            [0.367879]]])
     """
 
     def __init__(
@@ -119,13 +148,36 @@ class Integrator:
         first_step: float = _FIRST_STEP,
         most_steps: int = MOST_STEPS,
     ) -> Solution:
-        """From `start` (N, n + w), states and what was watched before, at time 0 with `parameters`
-        (N or 1, m), at `samples` (K,) or (N, K), which do not fall.
+        """Integrate many starts from time 0.
 
-        `tolerance` bounds each step's error in every state, relative to 1 + |state|; `end` (N,)
-        ends flights before the last sample. Of parameters that change, `pieces` has the numbers
-        and the ends, and `parameters` the others. An event is found to rounding. A flight that has
-        taken `most_steps` ends.
+        Parameters
+        ----------
+        start : array (N, n + w)
+            States, and what was watched before.
+        parameters : array (N or 1, m)
+            Those that stay as they are.
+        samples : array (K,) or (N, K)
+            Times, s, that do not fall.
+        tolerance
+            A bound on each step's error in every state, relative to 1 + |state|.
+        end : array (N,), optional
+            Ends of flights before the last sample, s.
+        pieces
+            The parameters that change, and when.
+        first_step
+            The first step that is tried, s.
+        most_steps
+            A flight that has taken so many ends.
+
+        Returns
+        -------
+        Solution
+            Where the gauge changes sign, an event is found to rounding.
+
+        Raises
+        ------
+        ValueError
+            For parameters or states that are not those of these equations.
         """
         count, outputs = len(start), self.outputs
         samples = np.ascontiguousarray(np.atleast_2d(samples), float)
