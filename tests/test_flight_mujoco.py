@@ -148,7 +148,8 @@ def with_springs(model: Model, given: Mapping[str, JointTakeoff]) -> Tree:
 
     def own(joint: Joint) -> Joint:
         takeoff = given.get(joint.name, JointTakeoff())
-        values = {n: getattr(takeoff, n) for n in named if getattr(takeoff, n) is not None}
+        given_ = {n: getattr(takeoff, n, None) for n in named}
+        values = {n: x for n, x in given_.items() if x is not None}
         if takeoff.motion == "free":
             values["stiffness"] = 0.0
         return replace(joint, **values)

@@ -65,22 +65,22 @@ def run(chosen: argparse.Namespace) -> None:
     if chosen.plot is not None:
         check_picture("--plot", chosen.plot)
     spec = read_ensemble(chosen.spec)
-    found = carried_out(
+    flown = carried_out(
         spec.plan, chosen.out, chosen.chunk, chosen.threads, chosen.workers, chosen.scheduler,
         progress=sys.stderr.isatty(),
     )  # fmt: skip
     record = {"model": spec.plan.simulation.name, "dimensions": spec.plan.dims}
-    record |= summary(found.dataset, spec.tolerance)
+    record |= summary(flown.dataset, spec.tolerance)
     drawn = [n for n, v in spec.plan.vary.items() if v.distribution is not None]
     if chosen.plot is not None:
-        save_picture(chosen.plot, found.plot())
+        save_picture(chosen.plot, flown.plot())
         record["picture"] = str(chosen.plot)
     if chosen.out is not None:
         record["dataset"] = str(chosen.out)
     points = spec.plan.count // spec.plan.dims.get("sample", 1)
     few = points * len(spec.quantities) <= _MOST_RANKINGS
     if len(drawn) > 1 and 64 <= spec.plan.size <= _MOST_RANKED and few:
-        record |= _ranking(found.dataset, spec.quantities)
+        record |= _ranking(flown.dataset, spec.quantities)
     print(json.dumps(record) if chosen.json else "\n".join(_page(record)))
 
 

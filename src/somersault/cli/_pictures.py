@@ -19,9 +19,9 @@ def check_picture(option: str, path: Path) -> None:
         raise SomersaultError(f"{option} {path} is no picture; let it end in {PICTURES}")
 
 
-def save_picture(path: Path, made: Figure) -> None:
+def save_picture(path: Path, figure: Figure) -> None:
     """Write a picture by its file's ending, the same bytes on every day."""
     from somersault._core.files import write
     from somersault.view.style import saved
 
-    write(path, saved(made, path.suffix.lower()[1:]))
+    write(path, saved(figure, path.suffix.lower()[1:]))

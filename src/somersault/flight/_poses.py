@@ -20,7 +20,7 @@ _SIDES = ("left", "right")
 
 def through(stations: Sequence[tuple[float, Mapping[str, float]]]) -> dict[str, Any]:
     """Keyframes of every joint through poses (rad by joint) at times (s), none to no purpose."""
-    found: dict[str, list[tuple[float, float]]] = {}
+    keyframes: dict[str, list[tuple[float, float]]] = {}
     for name in stations[0][1]:
         row = [(time, pose[name]) for time, pose in stations]
         kept = [
@@ -28,8 +28,8 @@ def through(stations: Sequence[tuple[float, Mapping[str, float]]]) -> dict[str, 
             for k, (time, angle) in enumerate(row)
             if any(row[n][1] != angle for n in (k - 1, k + 1) if 0 <= n < len(row))
         ]
-        found[name] = kept or row[:1]
-    return found
+        keyframes[name] = kept or row[:1]
+    return keyframes
 
 
 def named(model: str | Model, name: str) -> dict[str, float]:
@@ -45,13 +45,13 @@ def named(model: str | Model, name: str) -> dict[str, float]:
 def both(model: Model, pose: Mapping[str, float]) -> dict[str, float]:
     """A pose with pairs that are named by what both sides share written out."""
     there = {joint.name for joint in model.joints}
-    found = {}
+    angles = {}
     for name, angle in by_name("legs", pose).items():
         meant = [name] if name in there else [f"{side}_{name}" for side in _SIDES]
         for joint in meant:
             model.joint(joint)
-            found[joint] = number(f"joint {name}", angle)
-    return found
+            angles[joint] = number(f"joint {name}", angle)
+    return angles
 
 
 def inertia(model: Model, pose: Mapping[str, float]) -> Array:

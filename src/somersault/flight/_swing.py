@@ -241,12 +241,12 @@ def swing(
     solver = Integrator(_slope(model, g, props), None if until is None else _gauge(model, until))
     times = np.linspace(0.0, duration, samples)
     start = np.concatenate([q0, u0])[None]
-    found = solver.solve(start, np.zeros((1, 0)), times, number("accuracy", accuracy))
-    before = times < found.end[0]
-    states = np.concatenate([found.states[0][before], found.final])
-    moments = np.append(times[before], found.end)
+    solution = solver.solve(start, np.zeros((1, 0)), times, number("accuracy", accuracy))
+    before = times < solution.end[0]
+    states = np.concatenate([solution.states[0][before], solution.final])
+    moments = np.append(times[before], solution.end)
     n = len(q0)
-    ended = STATUS[float(found.status[0])]
+    ended = STATUS[float(solution.status[0])]
     return Swing(model, g, props, moments, states[:, :n], states[:, n:], ended)
 
 

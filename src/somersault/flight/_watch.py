@@ -65,8 +65,8 @@ def values(
     """The quantities at one moment, of (angles, state, time, parameters)."""
     s, y, t = ca.SX.sym("s", 3), ca.SX.sym("y", state), ca.SX.sym("t")
     p = ca.SX.sym("p", parameters)
-    found = _named(quantities, [s[k] for k in range(3)], y, t, p, axes)
-    chosen = ca.vertcat(*[found[name] for name in extremes])
+    known = _named(quantities, [s[k] for k in range(3)], y, t, p, axes)
+    chosen = ca.vertcat(*[known[name] for name in extremes])
     return ca.Function("values", [ca.vertcat(s, y, t, p)], [ca.cse(ca.densify(chosen))])
 
 
@@ -127,9 +127,9 @@ def _with_rates(
 ) -> tuple[list[Any], list[Any]]:
     """Quantities and their time derivatives, at a state whose slope is f."""
     s, yy, tt = ca.SX.sym("s", 3), ca.SX.sym("yy", y.numel()), ca.SX.sym("tt")
-    found = _named(quantities, [s[k] for k in range(3)], yy, tt, p, axes)
-    chosen = ca.vertcat(*[found[name] for name in names])
-    direction = ca.vertcat(*[found[name] for name in RATES], f, 1.0)
+    known = _named(quantities, [s[k] for k in range(3)], yy, tt, p, axes)
+    chosen = ca.vertcat(*[known[name] for name in names])
+    direction = ca.vertcat(*[known[name] for name in RATES], f, 1.0)
     point = ca.vertcat(s, yy, tt)
     rate = ca.jtimes(chosen, point, direction)
     at = ca.vertcat(*angles, y, t)
@@ -142,11 +142,11 @@ def _extremes(g0: Any, g1: Any, a0: Any, a1: Any) -> tuple[Any, Any]:
     c, b = a0 + a1 - 2 * (g1 - g0), 3 * (g1 - g0) - 2 * a0 - a1
     root = ca.sqrt(ca.fmax(b * b - 3 * c * a0, 0))
     q = -(b + (1 - 2 * (b < 0)) * root)
-    found = [g0, g1]
+    candidates = [g0, g1]
     for s in (q / (3 * c), a0 / q):
         # Not a number, where there is no such turning point, is an end of the step.
         inside = ca.fmin(ca.fmax(s, 0.0), 1.0)
-        found.append(g0 + inside * (a0 + inside * (b + inside * c)))
-    least = ca.fmin(ca.fmin(found[0], found[1]), ca.fmin(found[2], found[3]))
-    greatest = ca.fmax(ca.fmax(found[0], found[1]), ca.fmax(found[2], found[3]))
+        candidates.append(g0 + inside * (a0 + inside * (b + inside * c)))
+    least = ca.fmin(ca.fmin(candidates[0], candidates[1]), ca.fmin(candidates[2], candidates[3]))
+    greatest = ca.fmax(ca.fmax(candidates[0], candidates[1]), ca.fmax(candidates[2], candidates[3]))
     return least, greatest

@@ -112,12 +112,12 @@ class Motion:
         at = finite("times", times)
         if at.size:
             self._covers(float(at.min()), float(at.max()))
-        found = np.empty((3, len(at), len(self.paths)))
+        result = np.empty((3, len(at), len(self.paths)))
         for place, path in enumerate(self.paths.values()):
             piece = np.searchsorted(path.knots, at, side="right")
             since = at - path.knots[np.maximum(piece - 1, 0)]
-            found[:, :, place] = polynomial(since, tuple(path.coefficients[piece].T))
-        return found[0], found[1], found[2]
+            result[:, :, place] = polynomial(since, tuple(path.coefficients[piece].T))
+        return result[0], result[1], result[2]
 
     def mirrored(self, model: str | Model) -> Motion:
         """The same motion seen in a mirror: left joints do what right ones did, and the reverse.
@@ -219,15 +219,15 @@ def spread(model: Model, names: Iterable[str]) -> dict[str, tuple[str, float, fl
     for unknown joints and those given twice.
     """
     pairs = _pairs(model)
-    found: dict[str, tuple[str, float, float]] = {}
+    joints: dict[str, tuple[str, float, float]] = {}
     for name in names:
         meant = sides(model, name) if name in pairs else {name: (1.0, 0.0)}
         for joint, (factor, offset) in meant.items():
             model.joint(joint)
-            if joint in found:
+            if joint in joints:
                 raise SomersaultError(f"joint {joint} is given twice, alone and with its pair")
-            found[joint] = (name, factor, offset)
-    return found
+            joints[joint] = (name, factor, offset)
+    return joints
 
 
 def finite(what: str, values: Sequence[float] | Array) -> Array:
