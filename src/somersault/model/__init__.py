@@ -1,5 +1,6 @@
 """Bodies in the air: what they are made of, and where they are read from."""
 
+from somersault.model._base import base_on_its_joints
 from somersault.model._bodies import GROUND, LIMIT_SLACK, Body, Follow, Joint
 from somersault.model._formats import register_format
 from somersault.model._kinematics import (
@@ -49,6 +50,7 @@ __all__ = [
     "as_vector",
     "athlete",
     "athlete_from_measurements",
+    "base_on_its_joints",
     "body_frames",
     "body_velocities",
     "centre_of_mass",

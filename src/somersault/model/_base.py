@@ -164,6 +164,21 @@ def root(bodies: Sequence[Body], base: str) -> tuple[Body, ...]:
     return tuple(replace(body, parent=number - 1) for number, body in enumerate(chain))
 
 
+def base_on_its_joints(model: Model) -> Model | None:
+    """The base alone, on the joints to the ground on which the model's file has it; None if the
+    file has it on none.
+
+    Its frame is that of the base; its masses mean nothing.
+    """
+    chain = [
+        replace(body, mass=1.0, com=ZERO, inertia=IDENTITY, shapes=())
+        for body in model.file_coordinates.root
+    ]
+    if not chain:
+        return None
+    return Model(f"the base of {model.name}", False, merge_welded(chain, free=False))
+
+
 def _let_go(name: str, bodies: list[Body]) -> Rooted:
     """Free what is fixed to the ground; where that weighs nothing, the body that stands on it."""
     fixed = _fixed(bodies, free=False)

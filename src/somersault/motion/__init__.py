@@ -16,6 +16,7 @@ from somersault.motion._path import (
     straight,
     value,
 )
+from somersault.motion._recorded_base import RecordedBase
 from somersault.motion._samples import low_pass, sampled_motion
 
 __all__ = [
@@ -23,6 +24,7 @@ __all__ = [
     "TAPE_DEGREE",
     "Motion",
     "Path",
+    "RecordedBase",
     "as_moves",
     "check_rows",
     "held",

@@ -6,7 +6,7 @@ import os
 from pathlib import Path as File
 
 from somersault._core.errors import SomersaultError
-from somersault.motion._files import column_name, seconds, table_of
+from somersault.motion._tables import column_name, seconds, table_of
 
 
 def read_column(

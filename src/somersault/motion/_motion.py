@@ -29,6 +29,7 @@ from somersault.model import (
     sides,
 )
 from somersault.motion._path import DEGREE, Path, check_rows, increasing, moves, polynomial
+from somersault.motion._recorded_base import RecordedBase
 
 _TURNS = 4 * pi  # rad: no joint winds up so far; degrees read as radians soon do
 _BETWEEN = 4  # points within each piece at which limits are checked beside its extremes
@@ -42,8 +43,9 @@ class Motion:
     `held` rests before and after (keyframes); one that is not was only recorded between the two,
     and a flight may not go beyond. `source` says in words where it came from and what was done to
     it; `filtered` how far the filter moved the samples of each joint at most (rad, m); `slack`
-    how far beyond its limits a joint may be (rad, m). Made by `Motion.moves`, `sampled_motion`
-    and `read_motion`. Raises SomersaultError for paths that are none.
+    how far beyond its limits a joint may be (rad, m); `base` where the base was, if that was
+    recorded. Made by `Motion.moves`, `sampled_motion` and `read_motion`. Raises SomersaultError
+    for paths that are none.
     """
 
     paths: Mapping[str, Path]
@@ -53,6 +55,7 @@ class Motion:
     source: str = ""
     filtered: Mapping[str, float] = field(default_factory=dict)
     slack: float = 0.0
+    base: RecordedBase | None = None
 
     def __post_init__(self) -> None:
         truth("held", self.held)
@@ -138,7 +141,11 @@ class Motion:
             paths[image] = path.image(factor, offset)
         filtered = {images[name][0]: moved for name, moved in self.filtered.items()}
         motion = replace(
-            self, paths=paths, filtered=filtered, source=f"{self.source}; mirrored".lstrip("; ")
+            self,
+            paths=paths,
+            filtered=filtered,
+            source=f"{self.source}; mirrored".lstrip("; "),
+            base=self.base and self.base.mirrored(),
         )
         motion.check(model)
         return motion
@@ -155,6 +162,7 @@ class Motion:
             begin=self.begin * factor,
             end=self.end * factor,
             source=f"{self.source}; time times {factor:g}".lstrip("; "),
+            base=self.base and self.base.at_times(factor, 0.0),
         )
 
     def delayed(self, seconds: float) -> Motion:
@@ -167,6 +175,7 @@ class Motion:
             begin=self.begin + delay,
             end=self.end + delay,
             source=f"{self.source}; delayed by {delay:g} s".lstrip("; "),
+            base=self.base and self.base.at_times(1.0, delay),
         )
 
     def check(self, model: str | Model) -> None:

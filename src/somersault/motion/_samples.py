@@ -20,6 +20,7 @@ from somersault._core.checks import by_name, text
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 from somersault.model import Model, load
+from somersault.motion._jumps import refuse_jumps, without_turns
 from somersault.motion._motion import Motion, check_slack, check_within, finite, spread
 from somersault.motion._path import DEGREE, Path
 
@@ -60,7 +61,9 @@ def sampled_motion(
     time 0 is `start`, the first sample if that is not said. `rate` (Hz) is how many knots a
     second the spline has, by default as many as there are samples; every knot costs a flight
     time. A step longer than `gap` (s; 2.5 median steps if not said) is refused. Samples and path
-    may be `slack` (rad, m) beyond the joints' limits. Raises SomersaultError for what is refused.
+    may be `slack` (rad, m) beyond the joints' limits. An angle that jumps by a whole turn between
+    two samples goes on, with a SomersaultWarning; any other jump is refused. Raises
+    SomersaultError for what is refused.
     """
     model = load(model)
     text("source", source)
@@ -80,7 +83,12 @@ def sampled_motion(
     slack = check_slack(slack)
     chosen = (at >= first) & (at <= last)
     for column, name in enumerate(joints):
-        check_within(model.joint(name), raw[chosen, column], at[chosen], slack)
+        joint = model.joint(name)
+        if joint.kind == "hinge":
+            raw[:, column] = without_turns(name, source, at, raw[:, column])
+        check_within(joint, raw[chosen, column], at[chosen], slack)
+        if joint.kind == "hinge":
+            refuse_jumps(name, at, raw[:, column], first, last)
     even, samples, said = _even(at, raw)
     frequency = (len(even) - 1) / float(even[-1] - even[0])
     if frequency < SLOWEST:

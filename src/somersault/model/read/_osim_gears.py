@@ -118,7 +118,7 @@ class Gears:
         follow."""
         found: dict[str, list[_Gear]] = {}
         named: set[str] = set()
-        for move in moves:
+        for move in sorted(moves, key=lambda move: not move.turns):
             by = move.function
             if move.coordinate is None or not isinstance(by, Line):
                 continue
