@@ -29,8 +29,8 @@ import numpy as np
 import somersault as so
 from somersault.engine import Integrator, cores, use_threads
 from somersault.ensembles import Plan, _cluster, _store, carried_out, plan
+from somersault.ensembles._carried_out import chunk_size
 from somersault.ensembles._chunks import chunked
-from somersault.ensembles._ensemble import chunk_size
 from somersault.flight import JointTakeoff, Takeoff, flights
 from somersault.stability import spin as steady_spin
 

@@ -1,10 +1,12 @@
 """Many runs of anything that can be run with different numbers: what varies, where they are kept,
 what they add up to."""
 
+from somersault.ensembles._carried_out import carried_out
 from somersault.ensembles._endings import ended_by, failed
-from somersault.ensembles._ensemble import Ensemble, carried_out, ensemble
+from somersault.ensembles._ensemble import ensemble
 from somersault.ensembles._landings import landing_derivatives, landing_map
 from somersault.ensembles._plan import Plan, plan
+from somersault.ensembles._result import Ensemble
 from somersault.ensembles._sensitivity import quick_sensitivity, sensitivity
 from somersault.ensembles._spec import EnsembleSpec, parse_ensemble, read_ensemble
 from somersault.ensembles._summary import fraction, quantiles, summary, within

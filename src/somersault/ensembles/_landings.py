@@ -9,7 +9,8 @@ import numpy as np
 from somersault._core.checks import name_list
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
-from somersault.ensembles._ensemble import Ensemble, ensemble
+from somersault.ensembles._ensemble import ensemble
+from somersault.ensembles._result import Ensemble
 from somersault.ensembles._vary import Vary
 from somersault.flight import Flight, Maneuver
 

@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any, get_type_hints
 
 from somersault._core.errors import SomersaultError
-from somersault.ensembles._ensemble import plan
-from somersault.ensembles._plan import Plan
+from somersault.ensembles._plan import Plan, plan
 from somersault.ensembles._vary import Vary
 from somersault.flight import KEYS, Maneuver, Report, flights
 from somersault.spec import Unfit, read_as, read_toml, structured, structured_within

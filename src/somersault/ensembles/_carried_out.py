@@ -1,0 +1,117 @@
+"""The ensemble of a plan: its chunks run, on threads or a cluster, into memory or a store."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from somersault._core.checks import text, truth, whole_number
+from somersault._core.datasets import netcdf
+from somersault._core.errors import SomersaultError
+from somersault._core.files import write as write_file
+from somersault.ensembles import _run, _store
+from somersault.ensembles._chunks import Chunks, chunked
+from somersault.ensembles._memory import empty_dataset, run_bytes
+from somersault.ensembles._plan import Plan
+from somersault.ensembles._result import Ensemble, store_path
+
+_MOST = 10**9  # chunks, threads or workers
+_CHUNK = 131_072  # flights
+_LEAST_CHUNK = 8_192
+_PARTS = 8  # that a small ensemble is cut into
+_CHUNK_BYTES = 2**26
+_MEMORY_BYTES = 2**31  # that a dataset without a store may take
+
+
+def carried_out(
+    plan: Plan, out: str | Path | None = None, chunk: int | None = None,
+    threads: int | None = None, workers: int | None = None, scheduler: str | None = None,
+    progress: bool = False,
+) -> Ensemble:  # fmt: skip
+    """The ensemble of a plan; with a store, what is left of it is run.
+
+    Parameters
+    ----------
+    plan : Plan
+        Made by `ensembles.plan`.
+    out, chunk, threads, workers, scheduler, progress
+        As for `ensemble`.
+
+    Returns
+    -------
+    Ensemble
+
+    Raises
+    ------
+    SomersaultError
+        For what does not fit, and for a store of another specification.
+    """
+    for what, value in (("chunk", chunk), ("threads", threads), ("workers", workers)):
+        if value is not None:
+            whole_number(what, value, 1, _MOST)
+    truth("progress", progress)
+    if scheduler is not None:
+        text("scheduler", scheduler)
+    file = None if out is None else store_path("out", out)
+    if workers is not None and scheduler is not None:
+        raise SomersaultError("workers and scheduler are both given; give one of them")
+    chunks = chunked(plan.dims, chunk or chunk_size(plan))
+    if file is None or file.suffix.lower() == ".nc":
+        return _in_memory(plan, chunks, file, threads, workers, scheduler, progress)
+    if file.exists():
+        chunks = _store.resume(file, plan)
+    else:
+        if scheduler is not None:  # before anything is written
+            from somersault.ensembles._cluster import check_scheduler
+
+            check_scheduler(scheduler)
+        _store.create(file, plan, chunks)
+        chunks = _store.resume(file, plan)  # which another program may have made meanwhile
+    done = _store.finished(file, plan, chunks)
+    left = [k for k in range(len(chunks)) if k not in done]
+    if left:
+        _store.note_processor(file)
+
+    def put(k: int, rows: Mapping[str, Any]) -> None:
+        _store.write(file, plan, chunks, k, rows)
+
+    _run_chunks(plan, chunks, left, put, file, threads, workers, scheduler, progress)
+    _store.tidy(file)
+    return Ensemble(_store.opened(file))
+
+
+def _run_chunks(
+    plan: Plan, chunks: Chunks, left: list[int], put: _run.Put, file: Path | None,
+    threads: int | None, workers: int | None, scheduler: str | None, shown: bool,
+) -> None:  # fmt: skip
+    remaining = sum(map(chunks.size, left))
+    with _run.progress_bar(plan.count, plan.count - remaining, shown) as advance:
+        if left and (workers is not None or scheduler is not None):
+            from somersault.ensembles._cluster import on_cluster
+
+            on_cluster(plan, chunks, left, put, advance, file, threads, workers, scheduler)
+        else:
+            _run.on_threads(plan, chunks, left, put, advance, threads)
+
+
+def _in_memory(
+    plan: Plan, chunks: Chunks, file: Path | None, threads: int | None,
+    workers: int | None, scheduler: str | None, shown: bool,
+) -> Ensemble:  # fmt: skip
+    if plan.count * run_bytes(plan) > _MEMORY_BYTES:
+        raise SomersaultError(
+            f"{plan.count:,} flights would fill the memory; give --out a Zarr store, MAP.zarr"
+        )
+    data, put = empty_dataset(plan, chunks)
+    every = list(range(len(chunks)))
+    _run_chunks(plan, chunks, every, put, None, threads, workers, scheduler, shown)
+    if file is not None:
+        write_file(file, netcdf(data))
+    return Ensemble(data)
+
+
+def chunk_size(plan: Plan) -> int:
+    """Flights in a chunk: about a second of work, some megabytes."""
+    fitting = max(_CHUNK_BYTES // run_bytes(plan), 64)
+    return min(fitting, _CHUNK, max(_LEAST_CHUNK, -(-plan.count // _PARTS)))

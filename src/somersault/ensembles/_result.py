@@ -1,0 +1,191 @@
+"""What an ensemble was: its dataset, and what it adds up to."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from somersault._core.errors import SomersaultError
+from somersault.ensembles import _store
+from somersault.simulation import ENDED
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, eq=False)
+class Ensemble:
+    """Flights that differ in what was varied: `dataset` over the varied quantities.
+
+    Made by `ensemble`, or by `Ensemble.open` from a file.
+    """
+
+    dataset: xr.Dataset
+
+    @staticmethod
+    def open(path: str | Path) -> Ensemble:
+        """An ensemble that was written before, whole or in part.
+
+        Parameters
+        ----------
+        path : str or Path
+            A Zarr store, whose values are read when they are used, or a NetCDF file.
+
+        Returns
+        -------
+        Ensemble
+
+        Raises
+        ------
+        SomersaultError
+            Where there is none.
+        """
+        file = store_path("path", path)
+        if not file.exists():
+            raise SomersaultError(f"there is no ensemble {str(path)!r}; check the path")
+        return Ensemble(_store.opened(file))
+
+    def fraction(
+        self,
+        good: Any = None,
+        tolerance: float | None = None,
+        *,
+        ended: str | None = None,
+        over: str | Sequence[str] = "sample",
+        confidence: float = 0.95,
+    ) -> xr.Dataset:
+        """The share of flights that came out right, with its confidence interval.
+
+        One of `good`, `tolerance` and `ended` says which those are.
+
+        Parameters
+        ----------
+        good : xarray.DataArray of bool, optional
+            For each flight, like `found.dataset.tilt < 0.1`. One that failed was not
+            good.
+        tolerance : float, optional
+            The flights whose landing error is at most so much, rad.
+        ended : str, optional
+            The flights that ended so: "duration", "event", "too many steps" …
+        over : str or sequence of str
+            The dimensions over which flights are counted.
+        confidence : float
+            That the interval holds the true share, between 0 and 1.
+
+        Returns
+        -------
+        xarray.Dataset
+            `fraction`, `low`, `high`, and `flights`, how many counted.
+
+        Raises
+        ------
+        SomersaultError
+            For what does not fit.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> vary = {"leant": so.Vary(adds_to="takeoff.tilt", normal=[0.0, 0.05])}
+        >>> found = so.ensemble("furrer", so.Takeoff(spin=8.64), 1.0, vary, size=20)
+        >>> float(found.fraction(ended="duration")["fraction"])
+        1.0
+        """
+        from somersault.ensembles._endings import ended_by, run_already
+        from somersault.ensembles._summary import fraction, share, within
+
+        given = sum(x is not None for x in (good, tolerance, ended))
+        if given != 1:
+            raise SomersaultError(
+                f"fraction is given {given} of good, tolerance and ended; give one of them, to say "
+                "which flights came out right"
+            )
+        codes = self.dataset[ENDED]
+        if ended is not None:
+            return share(ended_by(codes, ended), run_already(codes), over, confidence)
+        chosen = within(self.dataset, tolerance) if good is None else good
+        return fraction(chosen, codes, over, confidence)
+
+    def quantiles(
+        self, name: str, q: Sequence[float] = (0.05, 0.5, 0.95), **options: Any
+    ) -> xr.Dataset:
+        """Quantiles of a reported quantity, over the flights that did not fail.
+
+        Parameters
+        ----------
+        name : str
+            One of the variables.
+        q : sequence of float
+            From 0 to 1.
+        **options
+            `over`, as for `ensembles.quantiles`.
+
+        Returns
+        -------
+        xarray.Dataset
+            As `ensembles.quantiles` gives it.
+
+        Raises
+        ------
+        SomersaultError
+            For what does not fit.
+        """
+        from somersault.ensembles._summary import quantiles
+
+        return quantiles(self.dataset, name, q, **options)
+
+    def sensitivity(self, name: str, **options: Any) -> xr.Dataset:
+        """How much of the scatter of a reported quantity comes from each drawn one.
+
+        Parameters
+        ----------
+        name : str
+            One of the variables.
+        **options
+            `confidence` and `seed`, as for `ensembles.sensitivity`.
+
+        Returns
+        -------
+        xarray.Dataset
+            As `ensembles.sensitivity` gives it.
+
+        Raises
+        ------
+        SomersaultError
+            Where nothing is drawn, or there are too few samples.
+        """
+        from somersault.ensembles._sensitivity import sensitivity
+
+        return sensitivity(self.dataset, name, **options)
+
+    def plot(self, name: str | None = None) -> Figure:
+        """A picture of a reported quantity: a map over two grids, a band over one, or a histogram.
+
+        Parameters
+        ----------
+        name : str, optional
+            One of the variables; by default the landing error, or the first.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        SomersaultError
+            For more than two grids, or where all flights failed.
+        """
+        from somersault.ensembles._plot import plot
+
+        return plot(self.dataset, name)
+
+
+def store_path(what: str, given: str | Path) -> Path:
+    """The path of a store or a NetCDF file; SomersaultError naming `what` for what is none."""
+    if not isinstance(given, str | Path) or not str(given):
+        raise SomersaultError(
+            f"{what} must be the path of a Zarr store or of a .nc file, and is {given!r}"
+        )
+    return Path(given)
