@@ -31,11 +31,10 @@ class _Lump:
     shapes: list[Shape] = field(default_factory=list)
     sources: list[str] = field(default_factory=list)
 
-    def add(self, body: Body, position: Array, rotation: Array) -> None:
+    def weigh(self, body: Body, position: Array, rotation: Array) -> None:
         self.masses.append(body.mass)
         self.coms.append(position + rotation @ np.array(body.com))
         self.inertias.append(rotation @ np.array(body.inertia) @ rotation.T)
-        self.shapes += [shape.placed(position, rotation) for shape in body.shapes]
         if body.mass != 0:
             self.sources += [s for s in body.inertia_from.split(", ") if s not in self.sources]
 
@@ -89,12 +88,13 @@ def merge_welded(bodies: list[Body], free: bool) -> tuple[Body, ...]:
         if body.joints or (free and number == 0):
             places.append(_Place(len(kept), np.zeros(3), np.eye(3)))
             kept.append(_hung(body, above.index, position, rotation))
-            lumps.append(_Lump())
-            lumps[-1].add(body, np.zeros(3), np.eye(3))
+            lumps.append(_Lump(shapes=list(body.shapes)))
+            lumps[-1].weigh(body, np.zeros(3), np.eye(3))
         else:
             places.append(_Place(above.index, position, rotation))
             if above.index != GROUND:
-                lumps[above.index].add(body, position, rotation)
+                lumps[above.index].weigh(body, position, rotation)
+                lumps[above.index].shapes += [s.placed(position, rotation) for s in body.shapes]
     return tuple(
         lump.joined(body) if len(lump.masses) > 1 else body
         for body, lump in zip(kept, lumps, strict=True)

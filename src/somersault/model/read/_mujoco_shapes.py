@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -50,36 +51,44 @@ def _color(m: Any, g: int) -> Color | None:
 
 def _shape(m: Any, g: int) -> Shape | None:
     """None for what is no solid, or has no size."""
-    import mujoco
-
-    kinds: dict[int, Callable[..., Shape]] = {
-        int(mujoco.mjtGeom.mjGEOM_SPHERE): lambda s, **o: Sphere(radius=s[0], **o),
-        int(mujoco.mjtGeom.mjGEOM_CAPSULE): lambda s, **o: Capsule(
-            radius=s[0], half_length=s[1], **o
-        ),
-        int(mujoco.mjtGeom.mjGEOM_CYLINDER): lambda s, **o: Cylinder(
-            radius=s[0], half_length=s[1], **o
-        ),
-        int(mujoco.mjtGeom.mjGEOM_BOX): lambda s, **o: Box(half_sizes=tuple(s), **o),
-        int(mujoco.mjtGeom.mjGEOM_ELLIPSOID): lambda s, **o: Ellipsoid(semi_axes=tuple(s), **o),
-        int(mujoco.mjtGeom.mjGEOM_MESH): lambda _, **o: _mesh(m, g, **o),
-        int(mujoco.mjtGeom.mjGEOM_SDF): lambda _, **o: _mesh(m, g, **o),
-    }
-    make = kinds.get(int(m.geom_type[g]))
+    make = _makers().get(int(m.geom_type[g]))
     if make is None:
         return None
+    pose = {
+        "position": as_vector(m.geom_pos[g]),
+        "rotation": as_matrix(matrix_from_quaternion(m.geom_quat[g])),
+        "color": _color(m, g),
+    }
     try:
-        return make(
-            m.geom_size[g].tolist(),
-            position=as_vector(m.geom_pos[g]),
-            rotation=as_matrix(matrix_from_quaternion(m.geom_quat[g])),
-            color=_color(m, g),
-        )
+        return make(m, g, pose)
     except SomersaultError:  # never refuse a flight for its picture
         return None
 
 
-def _mesh(m: Any, g: int, **options: Any) -> Shape:
+@cache
+def _makers() -> dict[int, Callable[[Any, int, dict[str, Any]], Shape]]:
+    """What makes a shape of a geom in a pose, by the number of its kind."""
+    from mujoco import mjtGeom
+
+    def sizes(m: Any, g: int) -> tuple[float, float, float]:
+        return as_vector(m.geom_size[g])
+
+    return {
+        int(mjtGeom.mjGEOM_SPHERE): lambda m, g, pose: Sphere(radius=sizes(m, g)[0], **pose),
+        int(mjtGeom.mjGEOM_ELLIPSOID): lambda m, g, pose: Ellipsoid(semi_axes=sizes(m, g), **pose),
+        int(mjtGeom.mjGEOM_BOX): lambda m, g, pose: Box(half_sizes=sizes(m, g), **pose),
+        int(mjtGeom.mjGEOM_CAPSULE): lambda m, g, pose: Capsule(
+            radius=sizes(m, g)[0], half_length=sizes(m, g)[1], **pose
+        ),
+        int(mjtGeom.mjGEOM_CYLINDER): lambda m, g, pose: Cylinder(
+            radius=sizes(m, g)[0], half_length=sizes(m, g)[1], **pose
+        ),
+        int(mjtGeom.mjGEOM_MESH): _mesh,
+        int(mjtGeom.mjGEOM_SDF): _mesh,
+    }
+
+
+def _mesh(m: Any, g: int, pose: dict[str, Any]) -> Shape:
     """A copy, so that the model does not hold the whole of MuJoCo's.
 
     MuJoCo has moved the vertices to the mesh's own middle and axes, and the geom with them.
@@ -90,5 +99,5 @@ def _mesh(m: Any, g: int, **options: Any) -> Shape:
     return Mesh(
         vertices=np.array(m.mesh_vert[first : first + count], float),
         faces=np.array(m.mesh_face[begin : begin + faces]),
-        **options,
+        **pose,
     )
