@@ -29,7 +29,6 @@ from somersault.model import Model, load
 
 TARGETS = {"layout": 60.0, "gymnast": 30.0}
 OURS, MUJOCO = "kernel, all threads", "MuJoCo rollout RK4, all threads"
-PUBLIC = "Equations.forward_dynamics, 65,536 samples"
 
 
 def models() -> dict[str, Model]:
@@ -67,7 +66,7 @@ def benchmark(model: Model, rounds: int) -> dict:
     timers = {
         "kernel, 1 thread": ours.kernel_timer(whole.kernel, 1, sample),
         OURS: ours.kernel_timer(whole.kernel, threads, sample),
-        PUBLIC: ours.public_timer(equations, q, v),
+        "Equations.forward_dynamics, 65,536 samples": ours.public_timer(equations, q, v),
     }
     lean = ours.forward_dynamics(equations, attitude_only=True) if model.free else None
     if lean is not None:
@@ -81,12 +80,9 @@ def benchmark(model: Model, rounds: int) -> dict:
     timers[MUJOCO] = mujoco_timer(model, threads, check)
     timers |= pinocchio_timers(model, threads, check)
     timers["plain NumPy, batches of 4096"] = ours.numpy_timer(whole.function, sample)
-    copying = {"copying, all threads": limits.copy_timer(threads)}
     peak = {"peak, 1 thread": limits.peak_timer(1), "peak, all threads": limits.peak_timer(threads)}
-    times = measured(timers | peak | copying, rounds)
+    times = measured(timers | peak, rounds)
     peaks = {name: times.pop(name) for name in peak}
-    (byte,) = (times.pop(name) for name in copying)
-    moved = 8 * (len(q) + len(v) + equations.speeds)  # bytes of a sample, in and out
     result = {
         "speeds": equations.speeds,
         "instructions": whole.instructions,
@@ -99,11 +95,7 @@ def benchmark(model: Model, rounds: int) -> dict:
             of: whole.operations * peaks[f"peak, {of}"]["min"] / times[f"kernel, {of}"]["min"]
             for of in ("1 thread", "all threads")
         },
-        "public": {
-            "over_kernel": {which: times[PUBLIC][which] / times[OURS][which] for which in byte},
-            "bytes": moved,
-            "copying_ns": {which: moved * byte[which] for which in byte},
-        },
+        "public": ours.public_cost(equations, whole.kernel, sample, q, v),
         "ratio": {which: times[MUJOCO][which] / times[OURS][which] for which in ("min", "median")},
     }
     if lean is not None:
@@ -129,11 +121,11 @@ def table(name: str, result: dict) -> str:
         f"  of the peak of {peak['peak, 1 thread']:.1f} Gflop/s: {share['1 thread']:.0%} on one "
         f"thread; of {peak['peak, all threads']:.1f}: {share['all threads']:.0%} on all"
     )
-    public, memory = result["public"], result["public"]["copying_ns"]
+    public = result["public"]
     lines.append(
-        f"  public call / kernel, all threads: {public['over_kernel']['min']:.2f} by the least "
-        f"times, {public['over_kernel']['median']:.2f} by the medians; copying its "
-        f"{public['bytes']} bytes would take {memory['min']:.1f} ({memory['median']:.1f}) ns"
+        f"  public call, processor time of one thread: {public['ns']:.1f} ns, "
+        f"{public['over_kernel']:.2f} times the {public['kernel']:.1f} ns of its kernel; copying "
+        f"its {public['bytes']} bytes takes {public['copying']:.1f} ns"
     )
     ratio, target = result["ratio"], TARGETS.get(name)
     aim = "" if target is None else f" (aim: at least {target:.0f})"

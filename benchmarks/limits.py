@@ -1,4 +1,4 @@
-"""What the machine could do at best: multiply-adds without end, and copying."""
+"""What the machine could do at best: multiply-adds without end."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from somersault.engine import LANES, compiled
 
 _CHAINS = 12  # independent multiply-adds in flight, more than any core's latency × width
 _TIMES = 2_000_000
-_COPIED = 4_000_000  # numbers for each thread, more than any cache holds
 
 
 def aligned(shape: tuple[int, ...]) -> np.ndarray:
@@ -24,20 +23,6 @@ def aligned(shape: tuple[int, ...]) -> np.ndarray:
     raw = np.empty(count + LANES)
     start = (-raw.ctypes.data % 64) // 8
     return raw[start : start + count].reshape(shape)
-
-
-def copy_timer(threads: int) -> Callable[[], float]:
-    """Seconds for each byte that is read or written, when all threads copy."""
-    pairs = [(np.ones(_COPIED), np.ones(_COPIED)) for _ in range(threads)]
-    pool = ThreadPoolExecutor(threads)
-
-    def measure() -> float:
-        start = time.perf_counter()
-        list(pool.map(lambda pair: np.copyto(*pair), pairs))
-        return (time.perf_counter() - start) / (threads * _COPIED * 2 * 8)
-
-    measure()
-    return measure
 
 
 @cache

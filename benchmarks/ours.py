@@ -15,10 +15,12 @@ import numpy as np
 from limits import aligned
 
 from somersault.dynamics import Equations
-from somersault.engine import LANES, Kernel, compiled
+from somersault.engine import LANES, Kernel, compiled, use_threads
 
 _COUNTED = (ca.OP_ADD, ca.OP_SUB, ca.OP_MUL, ca.OP_SQ, ca.OP_TWICE, ca.OP_DIV, ca.OP_INV)
 _SINE_AND_COSINE = 38  # operations of one reduction and both polynomials, a multiply-add as two
+_TURNS = 30
+MANY = 65_536  # samples of a public call
 BLOCKS = 256  # a thread's share, small enough to stay in its own cache
 
 
@@ -70,35 +72,58 @@ def forward_dynamics(equations: Equations, attitude_only: bool = False) -> Compi
     return Compiled(kernel, function, derived - start, time.perf_counter() - derived)
 
 
+@dataclass(frozen=True)
+class Chunk:
+    """Samples that stay in a core's cache, as a kernel takes them, and room for the results."""
+
+    kernel: Kernel
+    x: np.ndarray
+    out: np.ndarray
+
+    @property
+    def samples(self) -> int:
+        """How many they are."""
+        return BLOCKS * LANES
+
+    def run(self) -> None:
+        """Call the kernel for one block after another."""
+        strides = (self.kernel.inputs * LANES, self.kernel.outputs * LANES)
+        x, out = self.x.ctypes.data, self.out.ctypes.data
+        _blocks()(self.kernel.address, x, out, *strides, BLOCKS)
+
+
+def chunk(kernel: Kernel, sample: np.ndarray, rng: np.random.Generator) -> Chunk:
+    """Samples about one, (inputs,)."""
+    x, out = aligned((BLOCKS, kernel.inputs, LANES)), aligned((BLOCKS, kernel.outputs, LANES))
+    x[...] = sample[:, None] + 0.1 * rng.normal(size=x.shape)
+    return Chunk(kernel, x, out)
+
+
 def kernel_timer(kernel: Kernel, threads: int, sample: np.ndarray) -> Callable[[], float]:
-    """Seconds an evaluation on that many threads, each on a chunk that stays in its cache.
-
-    `sample` (inputs,) is the first sample; the others lie about it.
-    """
+    """Seconds an evaluation on that many threads, each on a chunk about `sample` of its own."""
     rng = np.random.default_rng(0)
-    chunks = []
-    for _ in range(threads):
-        x, out = aligned((BLOCKS, kernel.inputs, LANES)), aligned((BLOCKS, kernel.outputs, LANES))
-        x[...] = sample[:, None] + 0.1 * rng.normal(size=x.shape)
-        chunks.append((x, out))
+    chunks = [chunk(kernel, sample, rng) for _ in range(threads)]
     pool = ThreadPoolExecutor(threads)
-    address = _blocks_engine().get_function_address("blocks")
-    pointer, integer = ctypes.c_void_p, ctypes.c_int64
-    run = ctypes.CFUNCTYPE(None, pointer, pointer, pointer, integer, integer, integer)(address)
-    rounds, strides = 400, (kernel.inputs * LANES, kernel.outputs * LANES)
+    rounds = 400
 
-    def work(chunk: tuple[np.ndarray, np.ndarray]) -> None:
-        x, out = chunk
+    def work(own: Chunk) -> None:
         for _ in range(rounds):
-            run(kernel.address, x.ctypes.data, out.ctypes.data, *strides, BLOCKS)
+            own.run()
 
     def measure() -> float:
         start = time.perf_counter()
         list(pool.map(work, chunks))
-        return (time.perf_counter() - start) / (threads * rounds * BLOCKS * LANES)
+        return (time.perf_counter() - start) / (threads * rounds * chunks[0].samples)
 
     measure()
     return measure
+
+
+@cache
+def _blocks() -> Callable[..., None]:
+    address = _blocks_engine().get_function_address("blocks")
+    pointer, integer = ctypes.c_void_p, ctypes.c_int64
+    return ctypes.CFUNCTYPE(None, pointer, pointer, pointer, integer, integer, integer)(address)
 
 
 @cache
@@ -125,19 +150,49 @@ done:
 
 
 def public_timer(equations: Equations, q: np.ndarray, v: np.ndarray) -> Callable[[], float]:
-    """Seconds an evaluation by `Equations.forward_dynamics`, given 65,536 samples."""
-    count = 65536
-    rng = np.random.default_rng(1)
-    many_q = q + 0.1 * rng.normal(size=(count, len(q)))
-    many_v = v + 0.1 * rng.normal(size=(count, len(v)))
+    """Seconds an evaluation by `Equations.forward_dynamics`, given many samples."""
+    many_q, many_v = _many(q, v)
 
     def measure() -> float:
         start = time.perf_counter()
         equations.forward_dynamics(many_q, many_v)
-        return (time.perf_counter() - start) / count
+        return (time.perf_counter() - start) / MANY
 
     measure()
     return measure
+
+
+def public_cost(
+    equations: Equations, kernel: Kernel, sample: np.ndarray, q: np.ndarray, v: np.ndarray
+) -> dict[str, float]:
+    """The same call beside its kernel, and beside copying its bytes, in turns: nanoseconds of
+    processor time an evaluation, on one thread, which other work on the machine hardly changes."""
+    many_q, many_v = _many(q, v)
+    own = chunk(kernel, sample, np.random.default_rng(0))
+    moved = 8 * (len(q) + len(v) + equations.speeds)  # bytes of a sample, in and out
+    source = np.ones(MANY * moved // 16)
+    target = np.ones_like(source)
+
+    def spent(what: Callable[[], object], samples: int) -> float:
+        start = time.thread_time()
+        what()
+        return (time.thread_time() - start) / samples * 1e9
+
+    times = []
+    with use_threads(1):
+        for _ in range(_TURNS):
+            call = spent(lambda: equations.forward_dynamics(many_q, many_v), MANY)
+            alone = spent(lambda: [own.run() for _ in range(8)], 8 * own.samples)
+            copying = spent(lambda: np.copyto(target, source), MANY)
+            times.append((call, alone, copying, call / alone))
+    call, alone, copying, ratio = np.median(times[1:], axis=0).tolist()
+    return {"bytes": moved, "ns": call, "kernel": alone, "copying": copying, "over_kernel": ratio}
+
+
+def _many(q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    rng = np.random.default_rng(1)
+    shapes = (MANY, len(q)), (MANY, len(v))
+    return q + 0.1 * rng.normal(size=shapes[0]), v + 0.1 * rng.normal(size=shapes[1])
 
 
 def numpy_timer(function: ca.Function, sample: np.ndarray) -> Callable[[], float]:

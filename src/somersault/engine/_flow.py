@@ -16,7 +16,7 @@ from llvmlite import ir
 from somersault.engine._vectors import LANES
 
 INTEGER, DOUBLE, POINTER = ir.IntType(64), ir.DoubleType(), ir.PointerType()
-LANE_BITS, NOTHING = ir.IntType(LANES), ir.VoidType()
+BIT, LANE_BITS, NOTHING = ir.IntType(1), ir.IntType(LANES), ir.VoidType()
 
 _KINDS = {ctypes.c_int64: INTEGER, ctypes.c_double: DOUBLE, ctypes.c_void_p: POINTER}
 
@@ -57,7 +57,7 @@ class Code:
 class Flow(ir.IRBuilder):
     """llvmlite's builder, which stands at the end of a block."""
 
-    def room(self, kind: Any, count: int = 1) -> Any:
+    def room(self, kind: Any, count: Any = 1) -> Any:
         """Memory of the function for so many numbers; not in a loop."""
         room = self.alloca(kind, count)
         room.align = 64
@@ -78,11 +78,15 @@ class Flow(ir.IRBuilder):
         """The number at a place."""
         return self.load(place, typ=kind)
 
-    def field(self, structure: type[ctypes.Structure], base: Any, name: str) -> Any:
-        """A field of a structure that starts at `base`."""
-        kind = {field[0]: field[1] for field in structure._fields_}[name]
+    def field(
+        self, structure: type[ctypes.Structure], base: Any, name: str, kind: Any = None
+    ) -> Any:
+        """A field of a structure that starts at `base`; the type `kind` of a pointer to a function
+        has to be given."""
+        fields = {field[0]: field[1] for field in structure._fields_}
         offset = integer(getattr(structure, name).offset)
-        return self.load(self.gep(base, [offset], source_etype=ir.IntType(8)), typ=_KINDS[kind])
+        place = self.gep(base, [offset], source_etype=ir.IntType(8))
+        return self.load(place, typ=kind or _KINDS[fields[name]])
 
     @contextmanager
     def counted(self, first: Any, end: Any) -> Iterator[Any]:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from somersault._core.array import Array
 from somersault.engine._expression import expression
 from somersault.engine._machine import compiled
-from somersault.engine._samples import samples
+from somersault.engine._samples import Samples, compute
 from somersault.engine._threads import pool, threads
 from somersault.engine._vectors import LANES, module
 
@@ -59,19 +59,12 @@ class Kernel:
 
     @cached_property
     def _compiled(self):  # the engine must outlive the addresses taken from it
-        kernel = module([expression(self._function, "kernel")])
-        return compiled(samples(self.widths, self.outputs), kernel)
+        return compiled(module([expression(self._function, "kernel")]))
 
     @cached_property
     def address(self) -> int:
         """Address of `void kernel(const double *x, double *y)` over one block of lanes."""
         return self._compiled.get_function_address("kernel")
-
-    @cached_property
-    def _samples(self):
-        address = self._compiled.get_function_address("samples")
-        pointers, integers = [ctypes.c_void_p] * 3, [ctypes.c_int64] * 3
-        return ctypes.CFUNCTYPE(None, *pointers, *integers)(address)
 
     def __call__(self, *arguments: ArrayLike) -> Array:
         """The function at each sample.
@@ -112,19 +105,33 @@ class Kernel:
         return arrays
 
     def _run(self, rows: list[tuple[Array, int]], out: Array, count: int) -> None:
-        addresses = (ctypes.c_void_p * len(rows))(*(a.ctypes.data for a, _ in rows))
-        strides = (ctypes.c_int64 * len(rows))(*(stride for _, stride in rows))
+        widths, addresses, strides = (
+            (kind * len(rows))(*numbers)
+            for kind, numbers in (
+                (ctypes.c_int64, self.widths),
+                (ctypes.c_void_p, (array.ctypes.data for array, _ in rows)),
+                (ctypes.c_int64, (stride for _, stride in rows)),
+            )
+        )
+        samples = Samples(
+            kernel=self.address,
+            arguments=len(rows),
+            widths=ctypes.addressof(widths),
+            rows=ctypes.addressof(addresses),
+            strides=ctypes.addressof(strides),
+            inputs=self.inputs,
+            outputs=self.outputs,
+            count=count,
+            out=out.ctypes.data,
+        )
         blocks = -(-count // LANES)
         workers = threads() if blocks >= _WORTH_A_THREAD else 1
         edges = [blocks * k // workers for k in range(workers + 1)]
-
-        def work(first: int, end: int) -> None:
-            self._samples(addresses, strides, out.ctypes.data, count, first, end)
-
+        run, job = compute(), ctypes.byref(samples)
         if workers == 1:
-            work(0, blocks)
+            run(job, 0, blocks)
         else:
-            list(pool().map(work, edges[:-1], edges[1:]))
+            list(pool().map(run, [job] * workers, edges[:-1], edges[1:]))
 
 
 def _rows(array: Array, lead: tuple[int, ...], count: int) -> tuple[Array, int]:
