@@ -11,7 +11,7 @@ from functools import cache
 
 import numpy as np
 
-from somersault.engine import LANES, compiled
+from somersault.engine import LANES, compiled, compiled_function
 
 _CHAINS = 12  # independent multiply-adds in flight, more than any core's latency × width
 _TIMES = 2_000_000
@@ -26,7 +26,8 @@ def aligned(shape: tuple[int, ...]) -> np.ndarray:
 
 
 @cache
-def _peak_engine():
+def _peak() -> Callable[..., None]:
+    """Nothing but independent multiply-adds."""
     vector = f"<{LANES} x double>"
     near_one = "<" + ", ".join(["double 0x3FEFFFFFFFFFFFFE"] * LANES) + ">"
     lines = [
@@ -46,7 +47,7 @@ def _peak_engine():
         for k in range(_CHAINS)
     ]
     newline = "\n"
-    return compiled(f"""
+    engine = compiled(f"""
 declare {vector} @llvm.fma.v{LANES}f64({vector}, {vector}, {vector})
 define void @peak(ptr %x, ptr %y, i64 %n) #0 {{
 entry:
@@ -65,12 +66,13 @@ done:
 }}
 attributes #0 = {{ nounwind "min-legal-vector-width"="512" "prefer-vector-width"="512" }}
 """)
+    pointers = ctypes.c_void_p, ctypes.c_void_p
+    return compiled_function(engine, "peak", *pointers, ctypes.c_int64)
 
 
 def peak_timer(threads: int) -> Callable[[], float]:
     """Seconds a floating-point operation in nothing but fused multiply-adds, two each."""
-    address = _peak_engine().get_function_address("peak")
-    call = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)(address)
+    call = _peak()
     rows = [aligned((2, LANES)) for _ in range(threads)]
     outs = [aligned((1, LANES)) for _ in range(threads)]
     for row in rows:

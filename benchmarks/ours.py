@@ -15,7 +15,7 @@ import numpy as np
 from limits import aligned
 
 from somersault.dynamics import Equations
-from somersault.engine import LANES, Kernel, compiled, use_threads
+from somersault.engine import LANES, Kernel, compiled, compiled_function, use_threads
 
 _COUNTED = (ca.OP_ADD, ca.OP_SUB, ca.OP_MUL, ca.OP_SQ, ca.OP_TWICE, ca.OP_DIV, ca.OP_INV)
 _SINE_AND_COSINE = 38  # operations of one reduction and both polynomials, a multiply-add as two
@@ -68,7 +68,7 @@ def forward_dynamics(equations: Equations, attitude_only: bool = False) -> Compi
     function = ca.Function("f", [joined], [ca.cse(ca.densify(value))])
     derived = time.perf_counter()
     kernel = Kernel(function)
-    kernel.address  # noqa: B018 (compiles)
+    kernel.block  # noqa: B018 (compiles)
     return Compiled(kernel, function, derived - start, time.perf_counter() - derived)
 
 
@@ -89,7 +89,7 @@ class Chunk:
         """Call the kernel for one block after another."""
         strides = (self.kernel.inputs * LANES, self.kernel.outputs * LANES)
         x, out = self.x.ctypes.data, self.out.ctypes.data
-        _blocks()(self.kernel.address, x, out, *strides, BLOCKS)
+        _blocks()(self.kernel.block, x, out, *strides, BLOCKS)
 
 
 def chunk(kernel: Kernel, sample: np.ndarray, rng: np.random.Generator) -> Chunk:
@@ -121,15 +121,13 @@ def kernel_timer(kernel: Kernel, threads: int, sample: np.ndarray) -> Callable[[
 
 @cache
 def _blocks() -> Callable[..., None]:
-    address = _blocks_engine().get_function_address("blocks")
-    pointer, integer = ctypes.c_void_p, ctypes.c_int64
-    return ctypes.CFUNCTYPE(None, pointer, pointer, pointer, integer, integer, integer)(address)
-
-
-@cache
-def _blocks_engine():
     """A loop that calls a kernel for one block of lanes after another."""
-    return compiled("""
+    pointer, integer = ctypes.c_void_p, ctypes.c_int64
+    arguments = pointer, pointer, pointer, integer, integer, integer
+    return compiled_function(compiled(_BLOCKS), "blocks", *arguments)
+
+
+_BLOCKS = """
 define void @blocks(ptr %kernel, ptr %x, ptr %y, i64 %xby, i64 %yby, i64 %n) {
 entry:
   br label %loop
@@ -146,7 +144,7 @@ loop:
 done:
   ret void
 }
-""")
+"""
 
 
 def public_timer(equations: Equations, q: np.ndarray, v: np.ndarray) -> Callable[[], float]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+
 import casadi as ca
 import numpy as np
 import pytest
@@ -195,6 +197,17 @@ def test_arguments_may_lie_in_memory_in_any_way() -> None:
         np.testing.assert_array_equal(difference()(x, b), x - b)
     for y in (packed["x"], b.astype(">f8"), b.astype("f4"), np.rint(b).astype(int), b.tolist()):
         np.testing.assert_array_equal(difference()(a[:, :5], y), a[:, :5] - np.asarray(y, float))
+
+
+def test_code_lives_as_long_as_its_function() -> None:
+    x = ca.SX.sym("x", 2)
+    block = Kernel(ca.Function("f", [x], [x[0] - x[1]])).block  # of a kernel that is gone
+    gc.collect()
+    raw = np.arange(5 * 8.0)
+    first = -raw.ctypes.data % 64 // 8
+    rows = raw[first : first + 24].reshape(3, 8)
+    block(rows[0].ctypes.data, rows[2].ctypes.data)
+    np.testing.assert_array_equal(rows[2], rows[0] - rows[1])
 
 
 def test_all_arguments_side_by_side() -> None:

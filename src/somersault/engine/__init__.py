@@ -2,7 +2,7 @@
 
 from somersault.engine._integrator import MOST_STEPS, STATUS, Integrator, Pieces, Solution
 from somersault.engine._kernel import Kernel
-from somersault.engine._machine import compiled, processor
+from somersault.engine._machine import compiled, compiled_function, processor
 from somersault.engine._threads import cores, pool, threads, use_threads
 from somersault.engine._vectors import LANES
 
@@ -15,6 +15,7 @@ __all__ = [
     "Pieces",
     "Solution",
     "compiled",
+    "compiled_function",
     "cores",
     "pool",
     "processor",

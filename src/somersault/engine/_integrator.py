@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,7 +13,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault.engine import _lanes
 from somersault.engine._expression import expression
-from somersault.engine._machine import compiled
+from somersault.engine._machine import compiled, compiled_function
 from somersault.engine._step import (
     BROKEN,
     EVENT,
@@ -119,7 +120,7 @@ class Integrator:
         self.outputs: int = self._rows.outputs
 
     @cached_property
-    def _engine(self):  # must outlive the function taken from it
+    def _fly(self) -> Callable[..., None]:
         functions = {
             "rhs": self._slope,
             "gauge": self._gauge,
@@ -129,12 +130,8 @@ class Integrator:
         texts = [expression(f, name) for name, f in functions.items() if f is not None]
         event = self._gauge is not None
         texts += [step(self._rows, event), renew(self._rows, event)]
-        return compiled(_lanes.fly(self._rows, self.changing), module(texts))
-
-    @cached_property
-    def _fly(self):
-        address = self._engine.get_function_address("fly")
-        return ctypes.CFUNCTYPE(None, ctypes.c_void_p)(address)
+        engine = compiled(_lanes.fly(self._rows, self.changing), module(texts))
+        return compiled_function(engine, "fly", ctypes.c_void_p)
 
     def solve(
         self,

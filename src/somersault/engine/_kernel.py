@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import math
+from collections.abc import Callable
 from functools import cached_property
 from itertools import accumulate, pairwise
 
@@ -13,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
 from somersault.engine._expression import expression
-from somersault.engine._machine import compiled
+from somersault.engine._machine import compiled, compiled_function
 from somersault.engine._samples import Samples, compute
 from somersault.engine._threads import pool, threads
 from somersault.engine._vectors import LANES, module
@@ -58,13 +59,10 @@ class Kernel:
         self._function = function
 
     @cached_property
-    def _compiled(self):  # the engine must outlive the addresses taken from it
-        return compiled(module([expression(self._function, "kernel")]))
-
-    @cached_property
-    def address(self) -> int:
-        """Address of `void kernel(const double *x, double *y)` over one block of lanes."""
-        return self._compiled.get_function_address("kernel")
+    def block(self) -> Callable[..., None]:
+        """`void kernel(const double *x, double *y)` over one block of lanes, compiled."""
+        engine = compiled(module([expression(self._function, "kernel")]))
+        return compiled_function(engine, "kernel", ctypes.c_void_p, ctypes.c_void_p)
 
     def __call__(self, *arguments: ArrayLike) -> Array:
         """The function at each sample.
@@ -113,8 +111,9 @@ class Kernel:
                 (ctypes.c_int64, (stride for _, stride in rows)),
             )
         )
+        block = self.block
         samples = Samples(
-            kernel=self.address,
+            kernel=ctypes.cast(block, ctypes.c_void_p),  # type: ignore[arg-type]
             arguments=len(rows),
             widths=ctypes.addressof(widths),
             rows=ctypes.addressof(addresses),

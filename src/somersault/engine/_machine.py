@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ctypes
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -9,10 +11,8 @@ _ROUNDING = ("fma", "fma4", "avx2", "avx512f", "neon", "sve")  # as LLVM calls t
 
 
 def compiled(*modules: str) -> Any:
-    """An engine with the functions of LLVM modules, which may call one another's.
-
-    It must outlive the addresses taken from it.
-    """
+    """An engine with the functions of LLVM modules, which may call one another's;
+    `compiled_function` takes one from it."""
     import llvmlite.binding as llvm
 
     llvm.initialize_native_target()
@@ -30,6 +30,16 @@ def compiled(*modules: str) -> Any:
     engine = llvm.create_mcjit_compiler(whole, machine)
     engine.finalize_object()
     return engine
+
+
+def compiled_function(engine: Any, name: str, *arguments: Any) -> Callable[..., None]:
+    """A compiled function of arguments of these C types, which returns nothing.
+
+    It keeps its engine, and so its code, as long as it lives.
+    """
+    pointer = ctypes.CFUNCTYPE(None, *arguments)(engine.get_function_address(name))
+    pointer.engine = engine  # type: ignore[attr-defined]
+    return pointer
 
 
 @cache

@@ -16,7 +16,7 @@ from typing import Any
 from llvmlite import ir
 
 from somersault.engine._flow import BIT, DOUBLE, INTEGER, NOTHING, POINTER, Code, Flow, integer
-from somersault.engine._machine import compiled
+from somersault.engine._machine import compiled, compiled_function
 from somersault.engine._vectors import LANES
 
 _WIDE = 4  # numbers of a row that are moved at once
@@ -54,12 +54,11 @@ def compute() -> Callable[[Any, int, int], None]:
     A last block that is not full has the last sample in the lanes that are left, whose results are
     written more than once.
     """
-    address = _engine().get_function_address("compute")
-    return ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64)(address)
+    engine = compiled(_text())
+    return compiled_function(engine, "compute", ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64)
 
 
-@cache
-def _engine() -> Any:  # must outlive the address taken from it
+def _text() -> str:
     code = Code()
     gather, scatter = _gather(code), _scatter(code)
     flow, (samples, first, end) = code.written("compute", [POINTER, INTEGER, INTEGER])
@@ -76,7 +75,7 @@ def _engine() -> Any:  # must outlive the address taken from it
         flow.call(kernel, [x, y])
         flow.call(scatter, [y, out, outputs, sample, last])
     flow.ret_void()
-    return compiled(str(code))
+    return str(code)
 
 
 def _gather(code: Code) -> Any:
