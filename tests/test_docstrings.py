@@ -20,7 +20,10 @@ import pytest
 import somersault
 
 SOURCE = Path(somersault.__file__).parent
-ROOMS = ("attitude", "history", "model", "rigid", "stability", "view")  # whose examples run
+ROOMS = (  # whose examples run
+    "attitude", "dynamics", "engine", "ensembles", "flight", "history", "model", "motion", "rigid",
+    "stability", "thesis", "view",
+)  # fmt: skip
 COMPLETE = ("attitude", "rigid", "stability")  # whose public calls say all that they should
 EXEMPLARY = sorted(
     ".".join(("somersault", *path.relative_to(SOURCE).with_suffix("").parts))
