@@ -16,6 +16,7 @@ HELP = "One free flight, from a takeoff described in a TOML file."
 EXAMPLES = """examples:
   somersault fly examples/layout.toml
   somersault fly examples/layout.toml --out layout.nc --json
+  somersault fly examples/layout.toml --video layout.mp4
 
 A SPEC:
   model = "furrer"              # a shipped name or a file; axes = [1, 2, 3] if its x is lateral
@@ -37,6 +38,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out", type=Path, metavar="FILE", help="write its history, .nc (NetCDF) or .csv"
     )
+    parser.add_argument(
+        "--video", type=Path, metavar="FILE", help="write a film of it, .mp4, .webm or .gif"
+    )
     parser.add_argument("--json", action="store_true", help="print JSON for programs")
 
 
@@ -48,6 +52,10 @@ def run(chosen: argparse.Namespace) -> None:
 
     if chosen.out is not None:
         check_history_file(chosen.out)
+    if chosen.video is not None:
+        from somersault.view import check_film
+
+        check_film(chosen.video)
     maneuver = Maneuver.read(chosen.spec)
     with warnings.catch_warnings(record=True):  # it is the error below
         flight = maneuver.fly()
@@ -57,6 +65,8 @@ def run(chosen: argparse.Namespace) -> None:
         )
     if chosen.out is not None:
         flight.save(chosen.out)
+    if chosen.video is not None:
+        flight.film(chosen.video, charts=True, vectors=("momentum",))
     if chosen.json:
         print(json.dumps(_record(flight)))
     else:

@@ -18,6 +18,7 @@ from somersault.flight._start import Start
 from somersault.flight._system import System
 from somersault.history import summary
 from somersault.model import Model, centre_of_mass, segment_momenta
+from somersault.view import Filmed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -55,7 +56,7 @@ class Landing:
 
 
 @dataclass(frozen=True, eq=False)
-class Flight:
+class Flight(Filmed):
     """One flight, as `fly` returns it. It is a `somersault.history.History`.
 
     Attributes

@@ -36,6 +36,7 @@ from somersault.model import (
     pose,
     spread,
 )
+from somersault.view import Filmed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -45,7 +46,7 @@ GRAVITY = (0.0, 0.0, -9.81)  # m/s², inertial axes; 3 is up
 
 
 @dataclass(frozen=True, eq=False)
-class Swing:
+class Swing(Filmed):
     """The motion of a model with a fixed base, as `swing` returns it: a `history.History`.
 
     Attributes

@@ -1,0 +1,124 @@
+"""The triangles of a model, few enough to be drawn often."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from somersault._core.array import Array
+from somersault._core.errors import SomersaultError
+from somersault.model import Model, model_shapes
+from somersault.model.shapes import Color, Mesh, Shape, loft
+from somersault.view._canvas import Surface
+
+TRUNK, LIMBS = (0.36, 0.53, 0.74), (0.90, 0.69, 0.46)  # of what has no colour of its own
+_MOST_FACES = 150_000  # of a whole model
+_TRUNK = 0.2  # of the mass: a body that has more is of the trunk
+_MOST_READ = 20_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Figure:
+    """What a model looks like: a surface, and for each of its corners the body it moves with, its
+    place and its unit normal in that body's axes, (n,), (n, 3) and (n, 3)."""
+
+    surface: Surface
+    bodies: Array
+    points: Array
+    normals: Array
+
+
+def figure_of(model: Model, most: int = _MOST_FACES) -> Figure:
+    """The triangles of a model's shapes; meshes with very many are made coarser.
+
+    Raises
+    ------
+    SomersaultError
+        For a model of so many triangles that even this would take minutes.
+    """
+    shapes = [(body, shape) for body, row in enumerate(model_shapes(model)) for shape in row]
+    sizes = [len(shape.faces) if isinstance(shape, Mesh) else 0 for _, shape in shapes]
+    if sum(sizes) > _MOST_READ:
+        raise SomersaultError(
+            f"{model.name} has meshes of {sum(sizes)} triangles, too many to draw; give meshes of "
+            f"at most {_MOST_READ} in all"
+        )
+    share = most / max(sum(sizes), most)
+    bodies, points, normals, faces, paints = [], [], [], [], []
+    start = 0
+    heavy = [k == 0 or body.mass > _TRUNK * model.mass for k, body in enumerate(model.bodies)]
+    for (body, shape), size in zip(shapes, sizes, strict=True):
+        if share < 1 and isinstance(shape, Mesh):
+            shape = coarser(shape, max(200, int(share * size)))
+        surface = shape.triangles
+        bodies.append(np.full(len(surface.vertices), body))
+        points.append(surface.vertices)
+        normals.append(surface.normals)
+        faces.append(surface.faces + start)
+        closed = float(_closed(shape))
+        paint = (*_colour(shape.color, heavy[body]), closed)
+        paints.append(np.tile(paint, (len(surface.faces), 1)))
+        start += len(surface.vertices)
+    if not start:
+        raise SomersaultError(f"{model.name} has no shapes to be drawn")
+    return Figure(
+        Surface(np.concatenate(faces), np.concatenate(paints)),
+        np.concatenate(bodies), np.concatenate(points), np.concatenate(normals),
+    )  # fmt: skip
+
+
+def _colour(own: Color | None, trunk: bool) -> tuple[float, float, float]:
+    if own is not None:
+        return own[0], own[1], own[2]
+    return TRUNK if trunk else LIMBS
+
+
+def _closed(shape: Shape) -> bool:
+    """Whether each edge of a surface has a face on either side, so that its inside is hidden."""
+    if not isinstance(shape, Mesh):
+        return True
+    surface = shape.triangles
+    size = float(np.ptp(surface.vertices, axis=0).max()) or 1.0
+    places = np.round(surface.vertices / (1e-6 * size)).astype(np.int64)
+    keys = places @ np.array([1, 2_000_003, 4_000_037_000_009])
+    _, place = np.unique(keys, return_inverse=True)
+    corners = place.reshape(-1)[surface.faces].astype(np.int64)
+    count = int(place.max()) + 1
+    ways = [corners[:, a] * count + corners[:, b] for a, b in ((0, 1), (1, 2), (2, 0))]
+    back = [corners[:, b] * count + corners[:, a] for a, b in ((0, 1), (1, 2), (2, 0))]
+    return np.array_equal(np.sort(np.concatenate(ways)), np.sort(np.concatenate(back)))
+
+
+def coarser(mesh: Mesh, most: int) -> Mesh:
+    """A mesh of at most so many triangles: corners that stand in one cell of a lattice are one."""
+    low = mesh.vertices.min(0)
+    size = float(np.ptp(mesh.vertices, axis=0).max()) or 1.0
+    cells = int(np.sqrt(most)) + 4
+    while True:
+        grid = np.minimum((mesh.vertices - low) * (cells / size), cells - 1).astype(np.int64)
+        keys = (grid[:, 0] * cells + grid[:, 1]) * cells + grid[:, 2]
+        _, place, count = np.unique(keys, return_inverse=True, return_counts=True)
+        place = place.reshape(-1)
+        faces = place[mesh.faces]
+        a, b, c = faces.T
+        faces = faces[(a != b) & (b != c) & (c != a)]
+        if len(faces):  # of those that have become one, one
+            order = np.sort(faces, 1)
+            name = (order[:, 0] * len(count) + order[:, 1]) * len(count) + order[:, 2]
+            faces = faces[np.unique(name, return_index=True)[1]]
+        if len(faces) <= most or cells <= 2:
+            break
+        cells = max(2, int(cells * min(0.9, np.sqrt(most / len(faces)))))
+    if not len(faces):
+        return mesh
+    middles = [np.bincount(place, mesh.vertices[:, k]) / count for k in range(3)]
+    return replace(mesh, vertices=np.stack(middles, -1), faces=faces)
+
+
+def arrow() -> Mesh:
+    """An arrow of length 1 along axis 3, as thick as an arrow of a body's size should be."""
+    angle = np.linspace(0, 2 * np.pi, 21)[:-1]
+    around = np.stack([np.cos(angle), np.sin(angle), np.zeros(20)], -1)
+    profile = [(0.016, 0.0), (0.016, 0.86), (0.042, 0.86), (0.001, 1.0)]
+    return loft([radius * around + [0.0, 0.0, height] for radius, height in profile])

@@ -1,0 +1,209 @@
+"""Single pictures of histories, drawn as films are."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from somersault._core.array import Array
+from somersault._core.checks import whole_number
+from somersault._core.errors import SomersaultError
+from somersault._core.files import write
+from somersault._core.numbers import number, numbers
+from somersault.view._actor import Actor
+from somersault.view._canvas import blank
+from somersault.view._film import check_place
+from somersault.view._lettering import write_on
+from somersault.view._look import look_of, several
+from somersault.view._scene import Scene
+from somersault.view._stage import Stage
+
+if TYPE_CHECKING:
+    from somersault.history import History
+
+_CELL = (240, 320)
+_MOST_POSES = 240
+_MOST_PIXELS = 60_000_000
+_STILL = 0.25  # of its size: a centre of mass that travels less stays in place
+
+
+def frame(histories: History | Sequence[History], time: float, **look: Any) -> Array:
+    """One frame of a film.
+
+    Parameters
+    ----------
+    histories : History or sequence of History
+        One, or several side by side.
+    time : float
+        s; before the first sample and after the last it is as it is there.
+    **look
+        size, camera, follow, vectors, charts, ghosts, labels, ground: see `Look`.
+
+    Returns
+    -------
+    ndarray, (height, width, 3)
+        Red, green and blue, bytes.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> from somersault.view import frame
+    >>> flight = so.fly("furrer", so.Takeoff(spin=8.6, tilt=0.05), 0.5)
+    >>> frame(flight, 0.2, size=(320, 180)).shape
+    (180, 320, 3)
+    """
+    shown = several("histories", histories, 1)
+    moment = np.array([number("time", time)])
+    # What the eye takes in is that of the whole film.
+    whole = np.unique(np.concatenate([moment, _spread(shown, 60)]))
+    scene = Scene(shown, whole, look_of(look))
+    return scene.frame(int(np.searchsorted(whole, moment[0])))[..., :3].copy()
+
+
+def picture(
+    histories: History | Sequence[History],
+    path: str | os.PathLike[str],
+    times: float | Sequence[float] | Array | None = None,
+    columns: int = 6,
+    **look: Any,
+) -> None:
+    """Write a frame, or a contact sheet of several, as a .png file.
+
+    Parameters
+    ----------
+    histories : History or sequence of History
+        One, or several side by side.
+    path : path-like
+        A .png file, written whole or not at all.
+    times : float or sequence of float, optional
+        s; one time is one frame. Twelve from beginning to end, if they are not given.
+    columns : int
+        Frames in a row.
+    **look
+        As of a film; `size` is that of each frame.
+
+    Raises
+    ------
+    SomersaultError
+        For options that make no sense, and a file of another kind.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> from somersault.view import picture
+    >>> flight = so.fly("furrer", so.Takeoff(spin=8.6, tilt=0.05), 1.0)
+    >>> picture(flight, "layout.png", [0.0, 0.2, 0.4], size=(120, 160))
+    """
+    file = check_place(path, (".png",))
+    shown = several("histories", histories, 1)
+    one = times is not None and not np.shape(times)
+    moments = _spread(shown, 12) if times is None else numbers("times", np.atleast_1d(times))
+    columns = min(whole_number("columns", columns, 1, _MOST_POSES), max(1, len(moments)))
+    if not 0 < len(moments) <= _MOST_POSES:
+        raise SomersaultError(f"give 1 to {_MOST_POSES} times, not {len(moments)}")
+    chosen = look_of(look) if one else look_of(look, _CELL)
+    width, height = chosen.size
+    rows = -(-len(moments) // columns)
+    if width * columns * height * rows > _MOST_PIXELS:
+        raise SomersaultError(
+            f"that is a picture of {width * columns} x {height * rows} pixels; give a smaller "
+            "size or fewer times"
+        )
+    scene = Scene(shown, moments, chosen)
+    sheet = blank(width * columns, height * rows)
+    for k in range(len(moments)):
+        top, left = k // columns * height, k % columns * width
+        sheet[top : top + height, left : left + width] = scene.frame(k)
+    write(file, png(sheet))
+
+
+def stroboscopic_picture(
+    histories: History | Sequence[History],
+    path: str | os.PathLike[str],
+    times: int | Sequence[float] | Array = 9,
+    **look: Any,
+) -> None:
+    """Write one picture of a motion that goes somewhere, at several times, as a .png file.
+
+    Parameters
+    ----------
+    histories : History or sequence of History
+        A flight in gravity or with a velocity; several are drawn in the same place.
+    path : path-like
+        A .png file, written whole or not at all.
+    times : int or sequence of float
+        s, or how many from beginning to end.
+    **look
+        size, camera, vectors, ground: see `Look`. From the side (azimuth 90) one sees a
+        somersault best, which is what it is if `camera` is not given.
+
+    Raises
+    ------
+    SomersaultError
+        For what stays in place, options that make no sense, and a file of another kind.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> from somersault.view import stroboscopic_picture
+    >>> takeoff = so.Takeoff(spin=6.0, velocity=[2.0, 0.0, 4.0])
+    >>> flight = so.fly("furrer", takeoff, 0.8, gravity=[0.0, 0.0, -9.81])
+    >>> stroboscopic_picture(flight, "parabola.png", size=(320, 180))
+    """
+    file = check_place(path, (".png",))
+    shown = several("histories", histories, 1, _MOST_POSES)
+    chosen = look_of({"camera": (90.0, 8.0), **look})
+    if not np.shape(times):
+        moments = _spread(shown, whole_number("times", times, 1, _MOST_POSES))
+    else:
+        moments = numbers("times", times)
+    if not 0 < len(moments) * len(shown) <= _MOST_POSES:
+        raise SomersaultError(f"give 1 to {_MOST_POSES} poses, not {len(moments) * len(shown)}")
+    actors = [Actor(history, moments) for history in shown]
+    if len(moments) > 1 and not any(map(_travels, actors)):
+        raise SomersaultError(
+            f"{shown[0].model.name} stays in place, where its poses would cover one another; give "
+            "it gravity or a velocity, or make a contact sheet (picture)"
+        )
+    stage = Stage(
+        actors, [], *chosen.size, chosen.camera, False, chosen.vectors, chosen.ground
+    )  # fmt: skip
+    image = stage.draw(range(len(moments))).copy()
+    size = max(9.0, 0.028 * chosen.size[1])
+    write_on(image, (0.8 * size, 0.8 * size), _spacing(moments), size)
+    write(file, png(image))
+
+
+def _spacing(moments: Array) -> str:
+    """When poses of a stroboscope are."""
+    words = f"{moments[0]:.2f} to {moments[-1]:.2f} s"
+    steps = np.diff(moments)
+    if len(steps) and np.ptp(steps) < 1e-6 * abs(steps[0]):
+        return f"{words}, every {steps[0]:.3g} s"
+    return f"{words}, {len(moments)} poses"
+
+
+def png(image: Array) -> bytes:
+    """A picture (height, width, 3 or 4) as the bytes of a file."""
+    from PIL import Image
+
+    held = io.BytesIO()
+    Image.fromarray(np.ascontiguousarray(image[..., :3])).save(held, "PNG")
+    return held.getvalue()
+
+
+def _spread(histories: Sequence[History], count: int) -> Array:
+    """Moments from the first sample to the last."""
+    first = min(float(history.times[0]) for history in histories)
+    last = max(float(history.times[-1]) for history in histories)
+    return np.linspace(first, last, count if last > first else 1)
+
+
+def _travels(actor: Actor) -> bool:
+    corners, _ = actor.outline
+    size = float(np.ptp(corners[0], axis=0).max())
+    return float(np.ptp(actor.centres, axis=0).max()) > _STILL * size
