@@ -13,7 +13,7 @@ from typing import Any
 
 from llvmlite import ir
 
-from somersault.engine import compiled
+from somersault.engine import compiled, compiled_function
 from somersault.view._ground import ground
 from somersault.view._lanes import REALS, WIDTH, WORDS, Code, Lanes, begun
 
@@ -25,14 +25,8 @@ _INDEX, _POINTER = ctypes.c_int64, ctypes.c_void_p
 _EVERYWHERE, _SKY, _LAMP, _GLOSS = 0.45, 0.24, 0.44, 0.12
 
 
-class Functions(dict[str, Callable[..., None]]):
-    """Compiled functions by name, which keep the engine that they are of."""
-
-    engine: Any
-
-
 @cache
-def functions() -> Functions:
+def functions() -> dict[str, Callable[..., None]]:
     """The compiled functions.
 
     `solid` and `flat` (faces, width, height, stride, corners, places, normals, paints, light,
@@ -49,12 +43,10 @@ def functions() -> Functions:
     ground(module)
     engine = compiled(str(module))
     counts = {"solid": (4, 7), "flat": (4, 7), "resolve": (6, 5), "ground": (3, 2)}
-    made = Functions()
-    made.engine = engine
-    for name, (indices, pointers) in counts.items():
-        kind = ctypes.CFUNCTYPE(None, *[_INDEX] * indices, *[_POINTER] * pointers)
-        made[name] = kind(engine.get_function_address(name))
-    return made
+    return {
+        name: compiled_function(engine, name, *[_INDEX] * indices, *[_POINTER] * pointers)
+        for name, (indices, pointers) in counts.items()
+    }
 
 
 def _triangles(module: ir.Module, name: str, shaded: bool) -> None:
