@@ -204,7 +204,7 @@ def test_the_bound_of_each_root_holds(number: int) -> None:
         for system in (still, tree(number).linear(stiffness, numbers(tree(number), 0, 0.1))):
             exact = np.array([complex(root) for root in exact_roots(system)])
             for part in system.system.parts():
-                whole = _growth.reduced(part)
+                whole = _growth.reduced(part.scaled())
                 values, vectors = np.linalg.eig(whole.matrix)
                 bound = whole.noise * _growth.condition(vectors)
                 wrong = np.abs(values[:, None] - exact).min(1)

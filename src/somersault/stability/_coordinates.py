@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -31,15 +32,17 @@ class Coordinates:
 
     def of_joints(self, values: Array) -> Array:
         """Bᵀ diag(0, values) B of numbers at the joint speeds, (…, speeds): springs or dampers."""
-        rows = self.columns[3:]
-        return np.einsum("...s,si,sj->...ij", values, rows, rows)
+        rows, size = self.columns[3:], self.columns.shape[1]
+        squares = (rows[:, :, None] * rows[:, None, :]).reshape(len(rows), size**2)
+        return (values @ squares).reshape(*values.shape[:-1], size, size)
 
     def ordered(self, coupled: Array) -> list[int]:
         """Decoupled subsystems one after the other, the one of tilt and twist first."""
         return [i for group in blocks(together(coupled, self.attitude)) for i in group]
 
 
-def coordinates(model: Model, axis: int, locked: set[int]) -> Coordinates:
+@lru_cache(maxsize=64)
+def coordinates(model: Model, axis: int, locked: frozenset[int] = frozenset()) -> Coordinates:
     """Attitude turns and the joints that are not locked; mirrored ones in pairs.
 
     The order is the thesis's: the two turns across the axis of spin, tilt first and twist last,
@@ -47,8 +50,12 @@ def coordinates(model: Model, axis: int, locked: set[int]) -> Coordinates:
     image.
     """
     before, about, after = cycle(axis)
-    turns = dict(enumerate(np.eye(3 + len(model.speeds))[:, :3].T))
-    moves = {k: np.append(np.zeros(3), column) for k, column in motions(model, locked).items()}
+    moves = motions(model, locked)
+    columns = np.eye(3 + len(model.speeds))
+    turns = {k: columns[:, k] for k in range(3)}
+    if moves:
+        columns[3:, [3 + k for k in moves]] = np.array([*moves.values()]).T
+    moves = {k: columns[:, 3 + k] for k in moves}
     called = {axis - 1: name for axis, name in zip(model.axes, _TURNS, strict=True)}
     across = sorted((before, after), key=lambda i: _FIRST.index(called[i]))
     antisymmetric: list[tuple[str, Array]] = []
@@ -71,7 +78,7 @@ def coordinates(model: Model, axis: int, locked: set[int]) -> Coordinates:
     return Coordinates(tuple(names), np.column_stack([c for _, c in listed]), places)
 
 
-def motions(model: Model, locked: set[int]) -> dict[int, Array]:
+def motions(model: Model, locked: frozenset[int]) -> dict[int, Array]:
     """How all joint speeds move with each that is free, (speeds,), by its place.
 
     A joint that follows another moves with its leader, and is locked with it.
@@ -92,7 +99,7 @@ def _places(model: Model, joint: str) -> range:
     return range(own.start, own.stop)
 
 
-def locked_speeds(model: Model, lock: str | Iterable[str]) -> set[int]:
+def locked_speeds(model: Model, lock: str | Iterable[str]) -> frozenset[int]:
     """Places of the locked joints' speeds.
 
     Parameters
@@ -104,7 +111,7 @@ def locked_speeds(model: Model, lock: str | Iterable[str]) -> set[int]:
 
     Returns
     -------
-    set of int
+    frozenset of int
         Places in `model.speeds`.
 
     Raises
@@ -117,7 +124,7 @@ def locked_speeds(model: Model, lock: str | Iterable[str]) -> set[int]:
     >>> import somersault as so
     >>> from somersault.stability import locked_speeds
     >>> locked_speeds(so.load("furrer"), "shoulder")
-    {0, 1}
+    frozenset({0, 1})
     """
     if isinstance(lock, str):
         lock = [lock]
@@ -130,4 +137,4 @@ def locked_speeds(model: Model, lock: str | Iterable[str]) -> set[int]:
     places: set[int] = set()
     for name in spread(model, dict.fromkeys(names, 0.0), mirrored=False):
         places |= set(_places(model, name))
-    return places
+    return frozenset(places)

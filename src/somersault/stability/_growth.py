@@ -11,7 +11,8 @@ is left, and its growth counts as 0.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -28,11 +29,12 @@ _DAMPED = 1e-24  # of a mode's square: what less of it moves dampers is rounding
 _SIGNED = 1e-8  # of the terms of a mode's energy: what less is left of them has no sign
 _SYMMETRIC = 1e-9  # of the stiffness: what less of it is not symmetric is rounding
 _WORTH_THREADS = 4096  # matrices
+_Stack = TypeVar("_Stack", "Reduced", "Energy")
 
 
 @dataclass(frozen=True)
 class Reduced:
-    """The motions that keep the angular momentum: ẏ = A y, y = (x, q̇), and their energy.
+    """The motions that keep the angular momentum: ẏ = A y, y = (x, q̇ / scale).
 
     x are all coordinates but the turn about the axis of spin, q̇ the joints' rates, each in units
     of its own inertia. Stacks (…) as those of the system.
@@ -43,54 +45,56 @@ class Reduced:
     noise: Array
     """The size of what rounding can have changed in A, (…)."""
     rate_scale: Array
-    """By what q̇ was divided to balance A, (…, joints)."""
-    potential: Array
-    """The energy's second variation by x, (…, n − 1, n − 1)."""
+    """(…, joints)"""
     kinetic: Array
-    """And by q̇, (…, joints, joints)."""
+    """The kinetic energy's second variation by q̇, (…, joints, joints)."""
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Second variations, (…, k, k), of the energy that such motions lose to dampers alone."""
+
+    potential: Array
+    """By x."""
+    kinetic: Array
+    """By q̇."""
     damping: Array
-    """D over the joints, (…, joints, joints)."""
-    conservative: bool
-    """Whether, dampers aside, that energy is kept."""
+    """D over the joints."""
 
 
-def reduced(system: GyricSystem) -> Reduced:
+def reduced(system: ScaledSystem) -> Reduced:
     """The motions of a system that keep the angular momentum.
 
     The attitude rates follow from δh = 0. The integrals use the attitude's rows only, in which
     the joints' springs and dampers do not appear.
     """
-    turns, joints, x = system.attitude.places(), system.joints, system.deviations
-    scaled = system.scaled()
-    m, k = scaled.mass, scaled.stiffness
-    across = m[..., turns, :]
+    t, x, m = system.turns, system.first, system.mass
+    coupling, unit = m[..., t:, :t], np.eye(m.shape[-1] - t)
     # attitude rates = from_rates q̇ + from_x x
-    from_rates, from_x = -scaled.inverse @ across[..., joints], -scaled.inverse @ scaled.held
-    velocity_x = np.zeros((*from_x.shape[:-2], len(x), len(x)))  # ẋ = velocity_x x + velocity_q q̇
-    velocity_q = np.zeros((*from_rates.shape[:-2], len(x), len(joints)))
-    for row, p in enumerate(x):
-        if p in turns:
-            velocity_x[..., row, :] = from_x[..., turns.index(p), :]
-            velocity_q[..., row, :] = from_rates[..., turns.index(p), :]
-        else:
-            velocity_q[..., row, joints.index(p)] = 1.0
-    of_joints = m[..., joints, :]
-    kinetic = of_joints[..., joints] + of_joints[..., turns] @ from_rates
+    from_rates = -system.inverse @ m[..., :t, t:]
+    from_x = -system.inverse @ system.held
+    velocity_x = _above(from_x[..., x:, :], np.zeros((len(unit), from_x.shape[-1])))
+    velocity_q = _above(from_rates[..., x:, :], unit)  # ẋ = velocity_x x + velocity_q q̇
+    kinetic = m[..., t:, t:] + coupling @ from_rates
     lighter = np.linalg.inv(kinetic)
-    carried = of_joints[..., turns] @ from_x  # M_ja v̇_a with v̇_a = from_rates q̈ + from_x ẋ
-    rate = scaled.rate[..., joints, :]
-    by_x = carried @ velocity_x + rate[..., turns] @ from_x + k[..., joints, :][..., x]
-    by_q = carried @ velocity_q + rate[..., turns] @ from_rates + rate[..., joints]
+    carried = coupling @ from_x  # M_ja v̇_a with v̇_a = from_rates q̈ + from_x ẋ
+    dragged, dragging = system.rate[..., t:, :t], system.rate[..., t:, t:]
+    by_x = carried @ velocity_x + dragged @ from_x + system.stiffness[..., t:, x:]
+    by_q = carried @ velocity_q + dragged @ from_rates + dragging
     matrix, scale = balanced(velocity_x, velocity_q, -lighter @ by_x, -lighter @ by_q)
-    return Reduced(
-        matrix,
-        rounding(matrix, scaled.inverse, lighter),
-        scale,
-        scaled.potential,
-        kinetic,
-        scaled.damping[..., joints, :][..., joints],
-        conservative(scaled),
-    )
+    return Reduced(matrix, rounding(matrix, system.inverse, lighter), scale, kinetic)
+
+
+def energy(system: ScaledSystem, whole: Reduced) -> Energy | None:
+    """What dampers take from; None without dampers, and where the energy is not kept without them.
+
+    It is not with a ball joint's holding torque, which turns with the body, so that K is not
+    symmetric.
+    """
+    if not system.damping.any() or not conservative(system):
+        return None
+    t = system.turns
+    return Energy(system.potential, whole.kinetic, system.damping[..., t:, t:])
 
 
 def balanced(xx: Array, xq: Array, qx: Array, qq: Array) -> tuple[Array, Array]:
@@ -98,7 +102,14 @@ def balanced(xx: Array, xq: Array, qx: Array, qq: Array) -> tuple[Array, Array]:
     springs from swelling what rounding does to slow motions."""
     scale = np.sqrt(np.maximum(1.0, np.abs(qx).max(-1, initial=0.0)))
     across, down = scale[..., None, :], scale[..., :, None]
-    return _blocks(xx, xq * across, qx / down, qq * across / down), scale
+    lead = np.broadcast_shapes(*(block.shape[:-2] for block in (xx, xq, qx, qq)))
+    count, size = xx.shape[-1], xx.shape[-1] + qq.shape[-1]
+    whole = np.empty((*lead, size, size))
+    whole[..., :count, :count] = xx
+    np.multiply(xq, across, out=whole[..., :count, count:])
+    np.divide(qx, down, out=whole[..., count:, :count])
+    np.multiply(qq, across / down, out=whole[..., count:, count:])
+    return whole, scale
 
 
 def rounding(matrix: Array, *inverses: Array) -> Array:
@@ -109,8 +120,7 @@ def rounding(matrix: Array, *inverses: Array) -> Array:
 
 
 def conservative(system: ScaledSystem) -> bool:
-    """Whether, dampers aside, a system keeps its energy: not with a ball joint's holding torque,
-    which turns with the body, so that K is not symmetric."""
+    """Whether K is symmetric, so that nothing but dampers takes or gives energy."""
     k = system.stiffness
     skew = np.abs(k - np.swapaxes(k, -1, -2)).max(initial=0.0)
     return bool(skew <= _SYMMETRIC * np.abs(k).max(initial=0.0))
@@ -121,19 +131,23 @@ def growth_rate(system: GyricSystem) -> Array:
 
     Its sign can be relied on. It is 0 where nothing grows or decays as far as can be known.
     """
-    whole = reduced(system)
-    shape, size = whole.matrix.shape[:-2], whole.matrix.shape[-1]
+    scaled = system.scaled()
+    whole = reduced(scaled)
+    lead, size = whole.matrix.shape[:-2], whole.matrix.shape[-1]
     if size == 0:
-        return np.zeros(shape)
-    lead = shape or (1,)
-    top = _each(lambda a: np.linalg.eigvals(a).real.max(-1), whole.matrix).reshape(lead)
-    damped = whole.conservative & np.broadcast_to(whole.damping.any((-2, -1)), lead)
-    noise = np.broadcast_to(whole.noise, lead)
-    rates = np.where(np.abs(top) <= noise, 0.0, top)
-    unclear = np.nonzero((np.abs(top) < _CLEAR) & (damped | (np.abs(top) > noise)))
+        return np.zeros(lead)
+    lost = energy(scaled, whole)
+    if not lead:
+        return _resolved(whole, lost)
+    top = _each(lambda a: np.linalg.eigvals(a).real.max(-1), whole.matrix)
+    seen = np.abs(top) > whole.noise
+    rates = np.where(seen, top, 0.0)
+    unclear = np.nonzero((np.abs(top) < _CLEAR) & (seen | (lost is not None)))
     if unclear[0].size:
-        rates[unclear] = _shared(lambda *at: _resolved(_at(whole, lead, at)), *unclear)
-    return rates.reshape(shape)
+        rates[unclear] = _shared(
+            lambda *at: _resolved(_at(whole, lead, at), lost and _at(lost, lead, at)), *unclear
+        )
+    return rates
 
 
 def definite(system: GyricSystem) -> Array:
@@ -148,7 +162,7 @@ def extremes(system: GyricSystem) -> tuple[Array, Array]:
     their own inertia; 0 where they cannot be told from it. With nothing to deviate: ∞ and −∞."""
     scaled = system.scaled()
     potential, inverse = scaled.potential, scaled.inverse
-    if not system.deviations:
+    if not potential.shape[-1]:
         return np.full(potential.shape[:-2], np.inf), np.full(potential.shape[:-2], -np.inf)
     terms = _norm(scaled.stiffness) + _norm(inverse) * (1 + _norm(scaled.held) ** 2)
     noise = _ROUNDINGS * _EPS * terms
@@ -157,15 +171,16 @@ def extremes(system: GyricSystem) -> tuple[Array, Array]:
     return low, high
 
 
-def _resolved(whole: Reduced) -> Array:
+def _resolved(whole: Reduced, lost: Energy | None) -> Array:
     """The largest growth rate of each system, root by root, with the sign that can be known."""
     values, vectors = np.linalg.eig(whole.matrix)
-    count = whole.potential.shape[-1]
-    x, q = vectors[..., :count, :], vectors[..., count:, :] * whole.rate_scale[..., :, None]
     rates = values.real
     unsure = np.abs(rates) <= whole.noise[..., None] * condition(vectors)
-    slow = slow_rates(x, q, whole.potential, whole.kinetic, whole.damping)
-    return np.where(unsure, slow if whole.conservative else 0.0, rates).max(-1)
+    if lost is None:
+        return np.where(unsure, 0.0, rates).max(-1)
+    count = lost.potential.shape[-1]
+    x, q = vectors[..., :count, :], vectors[..., count:, :] * whole.rate_scale[..., :, None]
+    return np.where(unsure, slow_rates(x, q, lost), rates).max(-1)
 
 
 def condition(vectors: Array) -> Array:
@@ -180,14 +195,16 @@ def condition(vectors: Array) -> Array:
         return np.stack([condition(alone) for alone in vectors])
 
 
-def slow_rates(x: Array, q: Array, potential: Array, kinetic: Array, damping: Array) -> Array:
+def slow_rates(x: Array, q: Array, lost: Energy) -> Array:
     """Re(s) = −q̇ᴴ D q̇ / (xᴴ V x + q̇ᴴ M q̇) of modes (…, m) whose deviations x and joint rates q̇
     are the columns; 0 for those that move no damper, or whose energy has no sign."""
-    taken = _form(q, damping)
-    energy = _form(x, potential) + _form(q, kinetic)
-    terms = _form(np.abs(x), np.abs(potential)) + _form(np.abs(q), np.abs(kinetic))
-    signed = (taken > _DAMPED * _norm(damping)[..., None]) & (np.abs(energy) > _SIGNED * terms)
-    return np.where(signed, -taken / np.where(signed, energy, 1.0), 0.0)
+    taken = _form(q, lost.damping)
+    energies = _form(x, lost.potential) + _form(q, lost.kinetic)
+    of_x, of_q = np.abs(lost.potential), np.abs(lost.kinetic)
+    terms = _form(np.abs(x), of_x) + _form(np.abs(q), of_q)
+    damped = taken > _DAMPED * _norm(lost.damping)[..., None]
+    signed = damped & (np.abs(energies) > _SIGNED * terms)
+    return np.where(signed, -taken / np.where(signed, energies, 1.0), 0.0)
 
 
 def _form(vectors: Array, matrix: Array) -> Array:
@@ -199,31 +216,25 @@ def _norm(matrices: Array) -> Array:
     return np.sqrt(np.sum(matrices**2, (-2, -1)))
 
 
-def _blocks(a: Array, b: Array, c: Array, d: Array) -> Array:
-    """Four stacks of matrices as one, [[a, b], [c, d]]."""
-    lead = np.broadcast_shapes(*(x.shape[:-2] for x in (a, b, c, d)))
-    a, b, c, d = (np.broadcast_to(x, (*lead, *x.shape[-2:])) for x in (a, b, c, d))
-    return np.concatenate([np.concatenate([a, b], -1), np.concatenate([c, d], -1)], -2)
+def _above(upper: Array, lower: Array) -> Array:
+    """A stack of matrices (…, m, n), each above the same one (k, n)."""
+    whole = np.empty((*upper.shape[:-2], upper.shape[-2] + len(lower), upper.shape[-1]))
+    whole[..., : upper.shape[-2], :], whole[..., upper.shape[-2] :, :] = upper, lower
+    return whole
 
 
 # ------------------------------------------------------------------------------------- threads
 
 
-def _at(whole: Reduced, lead: tuple[int, ...], index: tuple[Array, ...]) -> Reduced:
+def _at(stack: _Stack, lead: tuple[int, ...], index: tuple[Array, ...]) -> _Stack:
     """Some systems of a stack."""
 
-    def some(values: Array, own: int) -> Array:
-        return np.broadcast_to(values, (*lead, *values.shape[values.ndim - own :]))[index]
+    def some(values: Array, core: int) -> Array:
+        return np.broadcast_to(values, (*lead, *values.shape[values.ndim - core :]))[index]
 
-    return Reduced(
-        some(whole.matrix, 2),
-        some(whole.noise, 0),
-        some(whole.rate_scale, 1),
-        some(whole.potential, 2),
-        some(whole.kinetic, 2),
-        some(whole.damping, 2),
-        whole.conservative,
-    )
+    cores = {"noise": 0, "rate_scale": 1}
+    kept = {f.name: some(getattr(stack, f.name), cores.get(f.name, 2)) for f in fields(stack)}
+    return replace(stack, **kept)
 
 
 def _each(function: Callable[[Array], Array], matrices: Array) -> Array:

@@ -60,15 +60,21 @@ class GyricSystem:
     attitude: Attitude
 
     @cached_property
+    def turns(self) -> list[int]:
+        """Places of the attitude's coordinates, that of the turn about the axis of spin first."""
+        about = self.attitude.about
+        return sorted(self.attitude.places(), key=lambda place: place != about)
+
+    @cached_property
     def joints(self) -> list[int]:
         """Places of the joints' coordinates."""
-        turns = self.attitude.places()
-        return [p for p in range(len(self.names)) if p not in turns]
+        return [p for p in range(len(self.names)) if p not in self.turns]
 
     @cached_property
     def deviations(self) -> list[int]:
-        """Places of all coordinates but the turn about the axis of spin, which changes nothing."""
-        return [p for p in range(len(self.names)) if p != self.attitude.about]
+        """Places of all coordinates but the turn about the axis of spin, which changes nothing:
+        the turns across it and the joints."""
+        return [p for p in (*self.turns, *self.joints) if p != self.attitude.about]
 
     @property
     def rigid(self) -> bool:
@@ -129,16 +135,22 @@ class GyricSystem:
 
         Whether a coordinate was in radians or in metres is then of no account for rounding.
         """
-        turns, x, size = self.attitude.places(), self.deviations, self.sizes
+        turns = self.turns
+        order = np.array([*turns, *self.joints])
+        size = self.sizes[..., order]
+        by = _outer(size, size)
         m, g, d, k = (
-            a / _outer(size, size) for a in (self.mass, self.gyric, self.damping, self.stiffness)
+            a[..., order[:, None], order] / by
+            for a in (self.mass, self.gyric, self.damping, self.stiffness)
         )
         inverse, held = self.integrals()
-        of_turns, of_x = size[..., turns], size[..., x]
-        return ScaledSystem(
-            m, g + d, d, k, inverse * _outer(of_turns, of_turns), held / _outer(of_turns, of_x),
-            self.amended() / _outer(of_x, of_x),
-        )  # fmt: skip
+        count, first = len(turns), int(self.attitude.about is not None)
+        of_turns = size[..., :count]
+        inverse, held = (
+            inverse * _outer(of_turns, of_turns),
+            held / _outer(of_turns, size[..., first:]),
+        )
+        return ScaledSystem(order, count, first, m, g + d, d, k, inverse, held)
 
     def roots(self) -> Array:
         """All 2n roots s of det(M s² + (G + D) s + K), (…, 2n), by imaginary part and then real.
@@ -168,18 +180,17 @@ class GyricSystem:
         before, about, after = self.attitude.before, self.attitude.about, self.attitude.after
         zero = np.zeros(len(self.names))
         rows = []
-        if before is not None:
-            rows.append(zero if after is None else -self.stiffness[..., after, :])
         if about is not None:
             rows.append(self.gyric[..., about, :])
+        if before is not None:
+            rows.append(zero if after is None else -self.stiffness[..., after, :])
         if after is not None:
             rows.append(zero if before is None else self.stiffness[..., before, :])
         lead = np.broadcast_shapes(*(row.shape[:-1] for row in rows)) if rows else ()
         held = np.zeros((*lead, len(rows), len(self.deviations)))
         for index, row in enumerate(rows):
             held[..., index, :] = row[..., self.deviations]
-        turns = self.attitude.places()
-        return np.linalg.inv(self.mass[..., turns, :][..., turns]), held
+        return np.linalg.inv(self.mass[..., self.turns, :][..., self.turns]), held
 
     def amended(self) -> Array:
         """Hessian over the deviations of the energy at fixed angular momentum, K + Pᵀ M_aa⁻¹ P,
@@ -189,23 +200,39 @@ class GyricSystem:
         of K counts.
         """
         x = self.deviations
-        inverse, held = self.integrals()
-        matrix = self.stiffness[..., x, :][..., x] + np.swapaxes(held, -1, -2) @ inverse @ held
-        return (matrix + np.swapaxes(matrix, -1, -2)) / 2
+        return _amended(self.stiffness[..., x, :][..., x], *self.integrals())
 
 
 @dataclass(frozen=True, eq=False)
 class ScaledSystem:
-    """M, C = G + D, D and K of a system, M_aa⁻¹ and P of its integrals δh = M_a ẋ + P x, and its
-    amended potential, with coordinates in units of their own inertia."""
+    """M, C = G + D, D and K of a system, and M_aa⁻¹ and P of its integrals δh = M_a ẋ + P x, with
+    coordinates in units of their own inertia.
 
+    They are taken in another `order` (n,): the turns first, `turns` of them, then the joints.
+    `first` is 1 where the turn about the axis of spin is the first of them, else 0: the deviations
+    begin there.
+    """
+
+    order: Array
+    turns: int
+    first: int
     mass: Array
     rate: Array
     damping: Array
     stiffness: Array
     inverse: Array
     held: Array
-    potential: Array
+
+    @cached_property
+    def potential(self) -> Array:
+        """The amended potential, as `GyricSystem.amended`."""
+        x = self.first
+        return _amended(self.stiffness[..., x:, x:], self.inverse, self.held)
+
+
+def _amended(stiffness: Array, inverse: Array, held: Array) -> Array:
+    matrix = stiffness + np.swapaxes(held, -1, -2) @ inverse @ held
+    return (matrix + np.swapaxes(matrix, -1, -2)) / 2
 
 
 def _outer(a: Array, b: Array) -> Array:

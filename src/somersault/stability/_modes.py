@@ -9,7 +9,14 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault.model import Model, common_name, mirror_pairs
-from somersault.stability._growth import balanced, condition, conservative, rounding, slow_rates
+from somersault.stability._growth import (
+    Energy,
+    balanced,
+    condition,
+    conservative,
+    rounding,
+    slow_rates,
+)
 from somersault.stability._gyric import GyricSystem
 
 _SMALL = 1e-6  # imaginary parts below it, in units of Ω, are those of real roots
@@ -62,7 +69,8 @@ def _of_part(model: Model, system: GyricSystem, keep: list[int]) -> list[Mode]:
     values, vectors = np.linalg.eig(matrix)
     x, rates = vectors[:n], vectors[n:] * scale[:, None]
     unsure = np.abs(values.real) <= rounding(matrix, inverse) * condition(vectors)
-    slow = slow_rates(x, rates, k, m, d) if conservative(scaled) else np.zeros(2 * n)
+    shapes = x[np.argsort(scaled.order)] / part.sizes[:, None]
+    slow = slow_rates(x, rates, Energy(k, m, d)) if conservative(scaled) else np.zeros(2 * n)
     real = np.where(unsure, slow, values.real)
     found: list[Mode] = []
     about = part.attitude.about
@@ -75,8 +83,7 @@ def _of_part(model: Model, system: GyricSystem, keep: list[int]) -> list[Mode]:
         if i in skip or values[i].imag < -_SMALL * 1e-3:
             continue
         root = complex(real[i], values[i].imag)
-        shape = x[:, i] / part.sizes
-        shape = shape / shape[np.argmax(np.abs(shape))]
+        shape = shapes[:, i] / shapes[np.argmax(np.abs(shapes[:, i])), i]
         if _stroboscopic(part, shape, root):
             found.append(Mode("stroboscopic", root, shape, 0))
             continue

@@ -71,7 +71,7 @@ def principal_axes(inertia: ArrayLike) -> PrincipalAxes:
     )
     _, vectors = np.linalg.eigh(inertia + nudge)
     along = np.abs(vectors)  # [body axis, principal axis]
-    match = np.stack([sum(along[..., k, order[k]] for k in range(3)) for order in _ORDERS], -1)
+    match = along[..., np.arange(3), _ORDERS].sum(-1)
     order = _ORDERS[np.argmax(match, -1)]
     axes = np.take_along_axis(vectors, order[..., None, :], -1)
     diagonal = np.einsum("...kk->...k", axes)

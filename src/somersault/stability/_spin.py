@@ -70,7 +70,7 @@ def spin(
     index = axis_index(about.inertias, or_somersault(model, axis))
     steady = steady_matrices(model, q, about.axes[:, index])
     mass, gyric, stiffness = steady.in_axes(about.axes)
-    _require_independent(model, coordinates(model, index + 1, set()).transformed(mass))
+    _require_independent(model, coordinates(model, index + 1).transformed(mass))
     return Spin(
         model,
         index + 1,

@@ -28,8 +28,10 @@ def strengths(
         own = model.speed_slice(name)
         numbers = _checked(f"{what} of {name}", what, value)
         here = numbers[..., None] * outboard[..., own]
-        lead = np.broadcast_shapes(result.shape[:-1], here.shape[:-1])
-        result = np.broadcast_to(result, (*lead, len(model.speeds))).copy()
+        if result.ndim > 1 or here.ndim > 1:
+            lead = np.broadcast_shapes(result.shape[:-1], here.shape[:-1])
+            result = np.broadcast_to(result, (*lead, len(model.speeds)))
+        result = result.copy()
         result[..., own] = here
     return result
 
@@ -61,9 +63,10 @@ def finite(what: str, value: Any) -> Array:
 
 def _checked(where: str, what: str, value: Any) -> Array:
     numbers = finite(where, value)
-    for number in (numbers.min(initial=np.inf), numbers.max(initial=-np.inf)):
-        if np.isfinite(number) and abs(number) > _MOST:
-            raise SomersaultError(f"{where} is {number:g}; lock a joint that stiff")
-    if what == "damping" and np.any(numbers < 0):
-        raise SomersaultError(f"{where} is {numbers.min():g}; dampers are not negative")
+    least, most = numbers.min(initial=0.0), numbers.max(initial=0.0)
+    if max(-least, most) > _MOST:
+        number = most if most > -least else least
+        raise SomersaultError(f"{where} is {number:g}; lock a joint that stiff")
+    if what == "damping" and least < 0:
+        raise SomersaultError(f"{where} is {least:g}; dampers are not negative")
     return numbers

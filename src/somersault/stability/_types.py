@@ -132,10 +132,9 @@ class Spin:
         of_spin = (self.mass_matrix, self.gyric_matrix, self.stiffness_matrix)
         whole = [*map(chosen.transformed, of_spin), *map(chosen.of_joints, (k, d))]
         order = chosen.ordered(coupled(*whole))
-        size = np.sqrt(np.diag(whole[0]))
-        m, g, of_spin_alone, of_springs, damped = (
-            _without_dust(a, np.outer(size, size))[np.ix_(order, order)] for a in whole
-        )
+        m, g, of_spin_alone, of_springs, damped = _without_dust(np.stack(whole))[
+            :, np.array(order)[:, None], order
+        ]
         names = tuple(chosen.names[i] for i in order)
         attitude = chosen.attitude.part(order)
         return LinearSpin(self, names, m, g, damped, of_spin_alone, of_springs, attitude)
@@ -189,6 +188,9 @@ class LinearSpin:
         nothing grows or decays as far as can be known. The drift of the somersault angle and the
         stroboscopic mode are left out, as in all directional stability (Playter 1994, section 2.3).
         """
+        if not self.D.any():
+            return float(growth_rate(self.system))
+        # With dampers energies count: rounding must not mix modes that do not act on each other.
         return max(float(growth_rate(part)) for part in self.system.parts())
 
     @property
@@ -309,11 +311,13 @@ class LinearSpin:
         )
 
 
-def _without_dust(matrix: Array, sizes: Array) -> Array:
-    """A matrix without what rounding left where there is nothing, against its coordinates' sizes;
-    springs and dampers may be small."""
-    largest = np.max(np.abs(matrix) / sizes)
-    return np.where(np.abs(matrix) > _DUST * min(1.0, largest) * sizes, matrix, 0.0)
+def _without_dust(matrices: Array) -> Array:
+    """M and other matrices (…, n, n) without what rounding left where there is nothing, against
+    their coordinates' sizes; springs and dampers may be small."""
+    size = np.sqrt(np.diag(matrices[0]))
+    scaled = np.abs(matrices) / np.outer(size, size)
+    largest = scaled.max((-2, -1), keepdims=True)
+    return np.where(scaled > _DUST * np.minimum(largest, 1.0), matrices, 0.0)
 
 
 def _in_turns(rate: float) -> str:
