@@ -12,7 +12,7 @@ from somersault.motion._tables import column_name, seconds, table_of
 def read_column(
     path: str | os.PathLike[str], column: str | None = None
 ) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Times (s) and values of a column of a .csv, .tsv, .txt, .mot or .sto file.
+    r"""Times (s) and values of a column of a .csv, .tsv, .txt, .mot or .sto file.
 
     Parameters
     ----------
@@ -29,6 +29,16 @@ def read_column(
     ------
     SomersaultError
         For a file that cannot be read, and a column that is not there.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "hip.csv"
+    ...     _ = file.write_text("time [ms],hip\n0,0\n100,25\n")
+    ...     read_column(file)
+    ((0.0, 0.1), (0.0, 25.0))
     """
     file = File(path)
     try:

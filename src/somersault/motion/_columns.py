@@ -12,7 +12,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault.model import Model
-from somersault.motion._motion import nameable, spread
+from somersault.motion._names import nameable, spread
 from somersault.motion._recorded_base import RecordedBase, from_coordinates, from_numbers
 from somersault.motion._tables import Table, split_label, unit_factor
 

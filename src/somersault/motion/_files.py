@@ -26,7 +26,7 @@ def read_motion(
     degrees: bool | None = None,
     **options: Any,
 ) -> Motion:
-    """A motion of a model from a .csv (.txt, .tsv), .mot or .sto file.
+    r"""A motion of a model from a .csv (.txt, .tsv), .mot or .sto file.
 
     A CSV has one row of names, `time` among them, then numbers; commas, tabs, semicolons (then
     with decimal commas too) or spaces between. A unit may follow in brackets: time [s] or [ms],
@@ -40,21 +40,41 @@ def read_motion(
     Parameters
     ----------
     path : path-like
+        The file.
     model : str or Model
+        The model that moved: a shipped name, a model file, or a model.
     names : mapping of str to str, optional
         Other columns, and the joints they are: {"arm_flex_r": "right_shoulder_flexion"}.
     ignore_others : bool, optional
-        Leave out columns that are neither; else they are refused.
+        Leave out columns that are neither; otherwise they are refused.
     degrees : bool, optional
-        Whether angles are degrees in a file that does not say so itself; must be said for a .mot
-        or .sto of that kind.
+        Whether angles are in degrees, for a file that does not say so itself. It must be given for
+        a .mot or .sto file of that kind.
     **options
         Those of `sampled_motion`: cutoff, rate, start, stop, gap, slack.
+
+    Returns
+    -------
+    Motion
+        With the pose of the base where the file has it.
 
     Raises
     ------
     SomersaultError
         Naming line, column or time, for anything that cannot be read or does not fit the model.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> import somersault as so
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder) / "arm.csv"
+    ...     rows = (f"{k / 100},{k / 2}" for k in range(41))
+    ...     _ = file.write_text("\n".join(["time,left_shoulder [deg]", *rows]))
+    ...     motion = so.read_motion(file, "furrer", cutoff=None)
+    >>> motion.joints, motion.end
+    (('left_shoulder',), 0.4)
     """
     model = load(model)
     try:

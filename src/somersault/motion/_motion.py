@@ -1,38 +1,27 @@
 """Motions: what some joints of a model do as time goes on.
 
-A `Motion` is a value, made of one piecewise quintic (`_path.Path`) a joint: from keyframes by
-`Motion.moves`, from samples by `_motion_samples.sampled_motion`, from files by
-`_motion_files.read_motion`. It can be mirrored, stretched and shifted in time, and says whether
-it fits a model.
+A `Motion` is a value, made of one piecewise quintic (`Path`) per joint: from keyframes by
+`Motion.moves`, from samples by `sampled_motion`, from files by `read_motion`. It can be
+mirrored, stretched and shifted in time, and says whether it fits a model.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import degrees, pi
 
 import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.checks import by_name, instance, text, truth
 from somersault._core.errors import SomersaultError
-from somersault._core.numbers import MOST, number
-from somersault.model import (
-    LIMIT_SLACK,
-    Joint,
-    Model,
-    Pair,
-    load,
-    mirror_images,
-    named_pairs,
-    sides,
-)
-from somersault.motion._path import DEGREE, Path, check_rows, increasing, moves, polynomial
+from somersault._core.numbers import number
+from somersault.model import Model, load, mirror_images
+from somersault.motion._limits import check_slack, check_within, extremes
+from somersault.motion._names import spread
+from somersault.motion._path import DEGREE, Path, increasing, moves, polynomial
 from somersault.motion._recorded_base import RecordedBase
-
-_TURNS = 4 * pi  # rad: no joint winds up so far; degrees read as radians soon do
-_BETWEEN = 4  # points within each piece at which limits are checked beside its extremes
+from somersault.motion._rows import finite, keyframe_table
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,18 +64,40 @@ class Motion:
     def moves(
         cls, model: str | Model, keyframes: Mapping[str, Sequence[tuple[float, float]]]
     ) -> Motion:
-        """Smooth moves through keyframes (time in s, angle in rad or m), each joint its own.
+        """Smooth moves through keyframes, each joint with its own.
 
-        At rest at every keyframe; between two of them the quintic 10 s³ − 15 s⁴ + 6 s⁵, which
-        does not overshoot; held before the first and after the last. A left–right pair may be
-        named once by its common name, with the left side's angles; the right side is mirrored.
-        Raises SomersaultError for unknown joints, angles outside their limits, and times that
-        do not increase.
+        Joints are at rest at every keyframe. Between two of them they follow the quintic
+        10 s³ − 15 s⁴ + 6 s⁵, which does not overshoot. Before the first keyframe and after the last
+        they hold their angle.
+
+        Parameters
+        ----------
+        model : str or Model
+            A shipped model's name, a model file, or a model.
+        keyframes : mapping of str to sequence of (float, float)
+            Times (s) and angles (rad; m for slides) by joint. A left–right pair may be named once
+            by its common name, with the left side's angles; the right side is mirrored.
+
+        Returns
+        -------
+        Motion
+
+        Raises
+        ------
+        SomersaultError
+            For an unknown joint, an angle outside its limits, or times that do not increase.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> raised = so.Motion.moves("furrer", {"shoulder": [(0.0, 0.0), (0.2, 1.2)]})
+        >>> raised.joints
+        ('left_shoulder', 'right_shoulder')
         """
         model = load(model)
         if not isinstance(keyframes, Mapping):
             raise SomersaultError("keyframes are a dict of joints' names to lists of (time, angle)")
-        rows = {name: _keyframes(name, row) for name, row in keyframes.items()}
+        rows = {name: keyframe_table(name, row) for name, row in keyframes.items()}
         paths = {
             joint: moves(rows[name][:, 0].copy(), offset + factor * rows[name][:, 1])
             for joint, (name, factor, offset) in spread(model, rows).items()
@@ -107,10 +118,29 @@ class Motion:
         return self.end - self.begin
 
     def values(self, times: Sequence[float] | Array) -> tuple[Array, Array, Array]:
-        """Values (rad, m), rates (per s) and accelerations (per s²) at times (T,) in s.
+        """Values, rates and accelerations of the joints at some times.
 
-        Each (T, joints), in the order of `joints`. Raises SomersaultError for times at which a
-        recorded motion is not known.
+        Parameters
+        ----------
+        times : array_like, shape (T,)
+            s.
+
+        Returns
+        -------
+        values, rates, accelerations : numpy.ndarray, shape (T, joints)
+            rad or m, per s and per s², in the order of `joints`.
+
+        Raises
+        ------
+        SomersaultError
+            For a time at which a recorded motion is not known.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> raised = so.Motion.moves("furrer", {"left_shoulder": [(0.0, 0.0), (0.2, 1.2)]})
+        >>> raised.values([0.0, 0.1, 0.2])[0].round(12).tolist()
+        [[0.0], [0.6], [1.2]]
         """
         at = finite("times", times)
         if at.size:
@@ -125,7 +155,26 @@ class Motion:
     def mirrored(self, model: str | Model) -> Motion:
         """The same motion seen in a mirror: left joints do what right ones did, and the reverse.
 
-        Raises SomersaultError for a joint that has no mirror image in the model.
+        Parameters
+        ----------
+        model : str or Model
+            The model that moves; it says which joints are mirror images.
+
+        Returns
+        -------
+        Motion
+
+        Raises
+        ------
+        SomersaultError
+            For a joint that has no mirror image in the model.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> left = so.Motion.moves("furrer", {"left_shoulder": [(0.0, 0.0), (0.2, 1.2)]})
+        >>> left.mirrored("furrer").joints
+        ('right_shoulder',)
         """
         model = load(model)
         images = mirror_images(model)
@@ -151,7 +200,29 @@ class Motion:
         return motion
 
     def scaled(self, factor: float) -> Motion:
-        """The same motion in `factor` times its time, about time 0: 2 is half as fast."""
+        """The same motion in another time, stretched about time 0.
+
+        Parameters
+        ----------
+        factor : float
+            Times are multiplied by it: 2 is half as fast.
+
+        Returns
+        -------
+        Motion
+
+        Raises
+        ------
+        SomersaultError
+            Unless the factor is positive.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> raised = so.Motion.moves("furrer", {"left_shoulder": [(0.0, 0.0), (0.2, 1.2)]})
+        >>> raised.scaled(2.0).end
+        0.4
+        """
         factor = number("factor", factor)
         if factor <= 0:
             raise SomersaultError(f"factor {factor:g} turns time back or stops it; give one over 0")
@@ -166,7 +237,29 @@ class Motion:
         )
 
     def delayed(self, seconds: float) -> Motion:
-        """The same motion, later by some seconds; earlier where that is negative."""
+        """The same motion at a later time.
+
+        Parameters
+        ----------
+        seconds : float
+            By how much later, s; earlier where it is negative.
+
+        Returns
+        -------
+        Motion
+
+        Raises
+        ------
+        SomersaultError
+            For a delay that is not a finite number.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> raised = so.Motion.moves("furrer", {"left_shoulder": [(0.0, 0.0), (0.2, 1.2)]})
+        >>> raised.delayed(0.1).begin
+        0.1
+        """
         delay = number("delay", seconds)
         paths = {name: path.delayed(delay) for name, path in self.paths.items()}
         return replace(
@@ -179,9 +272,25 @@ class Motion:
         )
 
     def check(self, model: str | Model) -> None:
-        """SomersaultError unless a model has these joints and they stay within their limits.
+        """Check that a model has these joints and that they stay within their limits.
 
-        Over the whole path, between knots too: extremes are found as roots of the rate.
+        The whole path is checked, between knots too: its extremes are the roots of its rate.
+
+        Parameters
+        ----------
+        model : str or Model
+
+        Raises
+        ------
+        SomersaultError
+            For a joint that the model does not have, a ball joint, or an angle outside the limits
+            by more than the motion's slack.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> raised = so.Motion.moves("furrer", {"left_shoulder": [(0.0, 0.0), (0.2, 1.2)]})
+        >>> raised.check("furrer")
         """
         model = load(model)
         for name, path in self.paths.items():
@@ -190,13 +299,33 @@ class Motion:
                 raise SomersaultError(
                     f"joint {name} is a ball, which no motion prescribes; give the model hinges"
                 )
-            check_within(joint, *_extremes(path, self.end), self.slack)
+            check_within(joint, *extremes(path, self.end), self.slack)
 
     def joint_paths(self, model: str | Model, duration: float | None = None) -> dict[str, Path]:
-        """The path of each joint that it moves, checked against a model; others are left out.
+        """The path of each joint that the motion moves, checked against a model.
 
-        With `duration` (s), also that the motion is known from 0 until then. Raises
-        SomersaultError where it does not fit.
+        Parameters
+        ----------
+        model : str or Model
+        duration : float, optional
+            s; if it is given, the motion must be known from 0 until then.
+
+        Returns
+        -------
+        dict of str to Path
+            By joint. Joints that the motion does not move are left out.
+
+        Raises
+        ------
+        SomersaultError
+            Where the motion does not fit the model, or is not known for that long.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> raised = so.Motion.moves("furrer", {"shoulder": [(0.0, 0.0), (0.2, 1.2)]})
+        >>> sorted(raised.joint_paths("furrer", 1.0))
+        ['left_shoulder', 'right_shoulder']
         """
         self.check(model)
         if duration is not None:
@@ -216,84 +345,6 @@ class Motion:
             )
 
 
-def nameable(model: Model) -> set[str]:
-    """Names under which a motion may be given: joints, and pairs by what they share."""
-    return {joint.name for joint in model.joints} | set(_pairs(model))
-
-
-def spread(model: Model, names: Iterable[str]) -> dict[str, tuple[str, float, float]]:
-    """For each joint that is meant: the name it was given by, and its own angle from that name's.
-
-    The angle is offset + factor · the one given; (name, factor, offset). Raises SomersaultError
-    for unknown joints and those given twice.
-    """
-    pairs = _pairs(model)
-    joints: dict[str, tuple[str, float, float]] = {}
-    for name in names:
-        meant = sides(model, name) if name in pairs else {name: (1.0, 0.0)}
-        for joint, (factor, offset) in meant.items():
-            model.joint(joint)
-            if joint in joints:
-                raise SomersaultError(f"joint {joint} is given twice, alone and with its pair")
-            joints[joint] = (name, factor, offset)
-    return joints
-
-
-def finite(what: str, values: Sequence[float] | Array) -> Array:
-    """A row of finite numbers; SomersaultError naming `what`, and which, for anything else."""
-    try:
-        row = np.asarray(values, float)
-    except (TypeError, ValueError, OverflowError):
-        row = np.empty((0, 0))
-    if row.ndim != 1:
-        raise SomersaultError(f"{what} must be a row of numbers; give a list of them")
-    wrong = np.flatnonzero(~(np.abs(row) <= MOST))
-    if wrong.size:
-        raise SomersaultError(
-            f"{what} must be finite and below 1e9, and number {wrong[0] + 1} is "
-            f"{row[wrong[0]]:g}; correct it or leave it out"
-        )
-    return row
-
-
-def check_slack(slack: float) -> float:
-    """How far beyond its limits a joint may be; SomersaultError for what is negative."""
-    if number("slack", slack) < 0:
-        raise SomersaultError(f"slack must not be negative, and is {slack:g}")
-    return float(slack)
-
-
-def check_within(joint: Joint, values: Array, times: Array, slack: float) -> None:
-    """SomersaultError where a joint's values (K,) at times (K,) go beyond its limits by `slack`.
-
-    Says so where they look like degrees.
-    """
-    largest = float(np.abs(values).max(initial=0.0))
-    unit = "m" if joint.kind == "slide" else "rad"
-    if joint.limits is None:
-        if joint.kind == "hinge" and largest > _TURNS:
-            raise SomersaultError(
-                f"joint {joint.name} reaches {largest:g} rad, which looks like degrees; say that "
-                "they are degrees, convert them, or give the joint limits in the model"
-            )
-        return
-    least, most = joint.limits
-    beyond = np.maximum(least - values, values - most)
-    worst = int(np.argmax(beyond))
-    if beyond[worst] <= max(slack, LIMIT_SLACK):
-        return
-    angle = float(values[worst])
-    if joint.kind == "hinge" and largest > 2 * pi:
-        mend = "which looks like degrees; say that they are degrees, or convert them"
-    else:
-        mend = "so change the motion, or the limits in the model"
-    shown = f"{angle:.6g} {unit}" + (f" ({degrees(angle):.4g}°)" if unit == "rad" else "")
-    raise SomersaultError(
-        f"joint {joint.name}: {shown} at {times[worst]:.6g} s is outside its limits {least:g} to "
-        f"{most:g}, {mend}"
-    )
-
-
 def _kept(values: Array) -> Array:
     """A copy that nobody writes to."""
     kept = np.array(values, float)
@@ -311,42 +362,3 @@ def _check_path(name: str, path: Path) -> None:
         raise SomersaultError(
             f"joint {name}: its knots are closer than a microsecond; stretch the motion in time"
         )
-
-
-def _keyframes(name: str, rows: Sequence[tuple[float, float]]) -> Array:
-    """Times and angles of one joint, (K, 2)."""
-    try:
-        table = np.asarray(rows, float)
-    except (TypeError, ValueError, OverflowError):
-        table = np.empty(0)
-    if table.ndim != 2 or table.shape[1] != 2:
-        raise SomersaultError(f"joint {name}: keyframes are a list of (time, angle) pairs")
-    times, angles = (
-        finite(f"joint {name}: {what}", column)
-        for what, column in zip(("times", "angles"), table.T, strict=True)
-    )
-    try:
-        check_rows(times, angles, "angles")
-    except SomersaultError as mistake:
-        raise SomersaultError(f"joint {name}: its motion {mistake}; put them in order") from None
-    return table
-
-
-def _pairs(model: Model) -> dict[str, Pair]:
-    """Pairs of hinges or slides of either side, by the name that they share."""
-    joints = {joint.name for joint in model.joints if joint.kind != "ball"}
-    return {n: pair for n, pair in named_pairs(model).items() if model.speeds[pair.left] in joints}
-
-
-def _extremes(path: Path, end: float) -> tuple[Array, Array]:
-    """Values and times among which are a path's least and greatest until `end`."""
-    from scipy.interpolate import PPoly
-
-    breaks = np.append(path.knots, end) if end > path.knots[-1] else path.knots
-    if len(breaks) == 1:
-        return path.coefficients[-1:, 0], breaks
-    pieces = PPoly(path.coefficients[1 : len(breaks)].T[::-1], breaks)
-    turning = pieces.derivative().roots(extrapolate=False)
-    inside = breaks[:-1, None] + np.diff(breaks)[:, None] * np.linspace(0, 1, _BETWEEN + 2)[1:-1]
-    times = np.concatenate([breaks, inside.ravel(), turning[np.isfinite(turning)]])
-    return pieces(times), times

@@ -39,25 +39,63 @@ class Path:
     known: tuple[float, float] = (-np.inf, np.inf)
 
     def image(self, sign: float, offset: float) -> Path:
-        """The path sign · this + offset."""
+        """The path sign · this + offset, as of a mirrored joint.
+
+        Parameters
+        ----------
+        sign, offset : float
+
+        Returns
+        -------
+        Path
+        """
         coefficients = sign * self.coefficients
         coefficients[..., 0] += offset
         return Path(self.knots, coefficients, self.known)
 
     def scaled(self, factor: float) -> Path:
-        """The same in `factor` times its time, about time 0."""
+        """The same path in another time, stretched about time 0.
+
+        Parameters
+        ----------
+        factor : float
+            Times are multiplied by it.
+
+        Returns
+        -------
+        Path
+        """
         with np.errstate(all="ignore"):  # what overflows is refused later
             powers = factor ** np.arange(DEGREE + 1)
             known = (factor * self.known[0], factor * self.known[1])
             return Path(self.knots * factor, self.coefficients / powers, known)
 
     def delayed(self, seconds: float) -> Path:
-        """The same, later by some seconds."""
+        """The same path at a later time.
+
+        Parameters
+        ----------
+        seconds : float
+
+        Returns
+        -------
+        Path
+        """
         known = (self.known[0] + seconds, self.known[1] + seconds)
         return Path(self.knots + seconds, self.coefficients, known)
 
     def reversed(self, end: float) -> Path:
-        """The same backwards in time: at t where it was at `end` - t."""
+        """The same path backwards in time: at t it is where it was at `end` − t.
+
+        Parameters
+        ----------
+        end : float
+            s.
+
+        Returns
+        -------
+        Path
+        """
         spans = np.diff(self.knots, axis=-1)
         nothing = np.zeros((*spans.shape[:-1], 1))
         # Each piece's time runs on from its other end; before the first knot and after the last
@@ -76,7 +114,20 @@ class Path:
         return Path(end - self.knots[..., ::-1], coefficients, known)
 
     def check_known(self, joint: str, duration: float) -> None:
-        """SomersaultError unless it may be followed from 0 for so long."""
+        """Check that the path may be followed from time 0 for a duration.
+
+        Parameters
+        ----------
+        joint : str
+            The joint that a message names.
+        duration : float
+            s.
+
+        Raises
+        ------
+        SomersaultError
+            Where the recording starts later or ends earlier.
+        """
         first, last = self.known
         if first > _EARLY or last < duration - _EARLY:
             raise SomersaultError(
@@ -85,7 +136,20 @@ class Path:
             )
 
     def at(self, times: Array) -> tuple[Array, Array]:
-        """Origins (N, K) and coefficients (N, K, 6) that hold at times (N, K), and after them."""
+        """The polynomials that hold at some times, and just after them.
+
+        Parameters
+        ----------
+        times : ndarray, shape (N, K)
+            s.
+
+        Returns
+        -------
+        origins : ndarray, shape (N, K)
+            The times from which the polynomials count, s.
+        coefficients : ndarray, shape (N, K, 6)
+            Of rising powers.
+        """
         if self.knots.ndim == 1:
             place = np.searchsorted(self.knots, times, side="right")
         else:
@@ -99,7 +163,19 @@ class Path:
 
 
 def moves(times: Array, values: Array) -> Path:
-    """Smooth moves through held values (…, K) at times (…, K)."""
+    """Smooth moves through values at which the path is at rest.
+
+    Parameters
+    ----------
+    times : ndarray, shape (..., K)
+        s.
+    values : ndarray, shape (..., K)
+
+    Returns
+    -------
+    Path
+        10 s³ − 15 s⁴ + 6 s⁵ between two values, s being the share of the time between them.
+    """
     path = held(times, values)
     span, by = np.diff(times), np.diff(values)
     with np.errstate(divide="ignore", invalid="ignore"):  # of paths that are refused later
@@ -109,7 +185,17 @@ def moves(times: Array, values: Array) -> Path:
 
 
 def as_moves(path: Path) -> tuple[Array, Array] | None:
-    """Times (K,) and values (K,) of a path of smooth moves, None for one that is something else."""
+    """The keyframes of a path of smooth moves.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    times, values : ndarray, shape (K,)
+        s, and rad or m. None, in place of the two, for a path that is something else.
+    """
     values = path.coefficients[..., 1:, 0]
     rebuilt = moves(path.knots, values).coefficients
     spans = np.pad(np.diff(path.knots), 1)[:, None] ** np.arange(DEGREE + 1)  # 0⁰ is 1
@@ -120,7 +206,18 @@ def as_moves(path: Path) -> tuple[Array, Array] | None:
 
 
 def straight(times: Array, values: Array) -> Path:
-    """Straight lines through values (…, K) at times (…, K); level before and after."""
+    """Straight lines through values; level before the first and after the last.
+
+    Parameters
+    ----------
+    times : ndarray, shape (..., K)
+        s.
+    values : ndarray, shape (..., K)
+
+    Returns
+    -------
+    Path
+    """
     path = held(times, values)
     with np.errstate(divide="ignore", invalid="ignore"):  # of paths that are refused later
         path.coefficients[..., 1:-1, 1] = np.diff(values) / np.diff(times)
@@ -128,7 +225,19 @@ def straight(times: Array, values: Array) -> Path:
 
 
 def held(times: Array, values: Array) -> Path:
-    """Values (…, K) that are held from times (…, K) on; the first one before too."""
+    """Values that are held until the next one.
+
+    Parameters
+    ----------
+    times : ndarray, shape (..., K)
+        s.
+    values : ndarray, shape (..., K)
+        Each from its time on; the first one before that too.
+
+    Returns
+    -------
+    Path
+    """
     level = np.zeros((*values.shape[:-1], values.shape[-1] + 1, DEGREE + 1))
     level[..., 0, 0] = values[..., 0]
     level[..., 1:, 0] = values
@@ -136,14 +245,38 @@ def held(times: Array, values: Array) -> Path:
 
 
 def value(path: Path, time: float) -> tuple[float, float]:
-    """Value and rate of one path at a time."""
+    """Value and rate of one path at a time.
+
+    Parameters
+    ----------
+    path : Path
+        Of one flight.
+    time : float
+        s.
+
+    Returns
+    -------
+    value, rate : float
+    """
     origin, coefficients = path.at(np.array([[time]]))
     angle, rate, _ = polynomial(time - float(origin[0, 0]), coefficients[0, 0].tolist())
     return angle, rate
 
 
 def polynomial(s: Any, coefficients: Sequence[Any]) -> tuple[Any, Any, Any]:
-    """Value, rate and acceleration of a polynomial in s, by Horner's rule, symbolic or not."""
+    """Value, rate and acceleration of a polynomial, by Horner's rule.
+
+    Parameters
+    ----------
+    s : number, array or symbol
+    coefficients : sequence
+        Of rising powers of s; numbers, arrays or symbols.
+
+    Returns
+    -------
+    value, rate, acceleration
+        Of the kind that s and the coefficients are.
+    """
     value = rate = half = 0.0
     for c in reversed(coefficients):
         half, rate, value = half * s + rate, rate * s + value, value * s + c
@@ -151,12 +284,34 @@ def polynomial(s: Any, coefficients: Sequence[Any]) -> tuple[Any, Any, Any]:
 
 
 def increasing(times: Array) -> Array:
-    """Whether times (…, K) increase, by a microsecond at least, (…)."""
+    """Whether times increase, by a microsecond at least.
+
+    Parameters
+    ----------
+    times : ndarray, shape (..., K)
+        s.
+
+    Returns
+    -------
+    ndarray of bool, shape (...)
+    """
     return np.all(np.diff(times) >= _SHORTEST, -1)
 
 
 def check_rows(times: Array, values: Array, what: str) -> None:
-    """SomersaultError unless times and values (`what` they are) are a path."""
+    """Check that times and values can be a path.
+
+    Parameters
+    ----------
+    times, values : ndarray, shape (K,)
+    what : str
+        What the values are, for a message.
+
+    Raises
+    ------
+    SomersaultError
+        For rows of different lengths, numbers that are not finite, and times that do not increase.
+    """
     if times.ndim != 1 or times.shape != values.shape or not times.size:
         raise SomersaultError(f"needs as many times as {what}, at least one of each")
     if not (np.all(np.isfinite(times)) and np.all(np.isfinite(values))):

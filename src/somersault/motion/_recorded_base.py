@@ -44,7 +44,17 @@ class RecordedBase:
         return unwrapped_angles(self.quaternions, self.axes)
 
     def part(self, first: float, last: float) -> RecordedBase:
-        """The samples between two times, in time since the first."""
+        """The samples between two times; time 0 is then the first of these times.
+
+        Parameters
+        ----------
+        first, last : float
+            s.
+
+        Returns
+        -------
+        RecordedBase
+        """
         chosen = (self.times >= first) & (self.times <= last)
         return replace(
             self,
@@ -54,11 +64,28 @@ class RecordedBase:
         )
 
     def at_times(self, factor: float, delay: float) -> RecordedBase:
-        """The same poses at `factor` times their times, and later by `delay` (s)."""
+        """The same poses at other times.
+
+        Parameters
+        ----------
+        factor : float
+            Times are multiplied by it.
+        delay : float
+            Added to them after that, s.
+
+        Returns
+        -------
+        RecordedBase
+        """
         return replace(self, times=self.times * factor + delay)
 
     def mirrored(self) -> RecordedBase:
-        """The same poses seen in a mirror across the axis of somersault."""
+        """The same poses seen in a mirror across the axis of somersault.
+
+        Returns
+        -------
+        RecordedBase
+        """
         across = np.ones(3)
         across[self.axes[0] - 1] = -1.0
         turned = self.quaternions * np.concatenate([[1.0], -across])

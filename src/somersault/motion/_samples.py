@@ -21,8 +21,11 @@ from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 from somersault.model import Model, load
 from somersault.motion._jumps import refuse_jumps, without_turns
-from somersault.motion._motion import Motion, check_slack, check_within, finite, spread
+from somersault.motion._limits import check_slack, check_within
+from somersault.motion._motion import Motion
+from somersault.motion._names import spread
 from somersault.motion._path import DEGREE, Path
+from somersault.motion._rows import finite
 
 # Gait is filtered at 6 Hz; that would move an arm that drops by 1.5 rad in 0.2 s, as twisting
 # gymnasts' do, by 0.03 rad. At 10 Hz it is 0.005 rad, no more than cameras err.
@@ -49,21 +52,54 @@ def sampled_motion(
     slack: float = SLACK,
     source: str = "samples",
 ) -> Motion:
-    """A motion through samples of joints' angles (rad; m for slides) at increasing times (s).
+    """A motion through samples of joints' angles.
+     Times that are uneven by more than a thousandth of a step are made even by a cubic spline, at
+    their mean rate. Then all samples are low-pass filtered, and a quintic spline is laid through
+    them: angle, rate, acceleration and two more derivatives are continuous. An angle that jumps by
+    a whole turn between two samples goes on, with a SomersaultWarning; any other jump is refused.
 
-    `values` holds one row (T,) a joint; a left–right pair may be given once by its common name,
-    with the left side's angles. Times that are uneven by more than a thousandth of a step are
-    made even by a cubic spline, at their mean rate. Then all samples are low-pass filtered at
-    `cutoff` (Hz; None for no filter), and a quintic spline is laid through them: angle, rate,
-    acceleration and two derivatives more are continuous.
+    Parameters
+    ----------
+    model : str or Model
+        A shipped model's name, a model file, or a model.
+    times : array_like, shape (T,)
+        Increasing, s.
+    values : mapping of str to array_like, shape (T,)
+        Angles (rad; m for slides) by joint. A left–right pair may be given once by its common name,
+        with the left side's angles.
+    cutoff : float or None
+        Of the low-pass filter, Hz; None for no filter.
+    rate : float, optional
+        How many knots a second the spline has, Hz; by default as many as there are samples. Every
+        knot costs a flight time.
+    start, stop : float, optional
+        A part of the samples, in their own time, s; it is taken after filtering. The motion's time
+        0 is `start`, by default the first sample.
+    gap : float, optional
+        The longest step between samples that is accepted, s; by default 2.5 median steps.
+    slack : float
+        By how much samples and path may be beyond the joints' limits, rad or m.
+    source : str
+        What a message calls the samples.
 
-    `start` and `stop` (s, in the samples' own time) choose a part, after filtering; the motion's
-    time 0 is `start`, the first sample if that is not said. `rate` (Hz) is how many knots a
-    second the spline has, by default as many as there are samples; every knot costs a flight
-    time. A step longer than `gap` (s; 2.5 median steps if not said) is refused. Samples and path
-    may be `slack` (rad, m) beyond the joints' limits. An angle that jumps by a whole turn between
-    two samples goes on, with a SomersaultWarning; any other jump is refused. Raises
-    SomersaultError for what is refused.
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    SomersaultError
+        For samples that are refused: jumps, gaps, angles beyond limits, unknown joints, numbers
+        that are not finite, and a part or a filter that does not fit them.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import somersault as so
+    >>> times = np.linspace(0.0, 1.0, 101)
+    >>> swung = so.sampled_motion("furrer", times, {"left_shoulder": 0.5 * times})
+    >>> swung.joints, swung.end
+    (('left_shoulder',), 1.0)
     """
     model = load(model)
     text("source", source)
@@ -116,7 +152,23 @@ def sampled_motion(
 
 
 def low_pass(samples: Array, rate: float, cutoff: float) -> Array:
-    """Samples (T, …) at `rate` (Hz), filtered without lag; 1/√2 of the amplitude at `cutoff`."""
+    """Samples without their high frequencies, filtered forwards and backwards, so without lag.
+
+    A Butterworth filter of order two, whose own cutoff is raised so that after both passes the
+    amplitude at `cutoff` is 1/√2 of what it was (Winter 2009, §3.4.4).
+
+    Parameters
+    ----------
+    samples : ndarray, shape (T, ...)
+    rate : float
+        Samples per second, Hz.
+    cutoff : float
+        Hz.
+
+    Returns
+    -------
+    ndarray, shape (T, ...)
+    """
     from scipy.signal import butter, sosfiltfilt
 
     once = np.tan(np.pi * cutoff / rate) / (2 ** (1 / _PASSES) - 1) ** 0.25
