@@ -28,7 +28,6 @@ from somersault.flight import (
 )
 from somersault.rigid import RigidMotion
 from somersault.thesis.ch1 import _techniques as techniques
-from somersault.thesis.ch6 import _hula as of_hula
 from somersault.thesis.ch6 import _torque_twist as of_torque_twist
 
 SHARP = 1e-12
@@ -254,7 +253,7 @@ def test_hula_without_a_side_does_not_twist():
 def test_mean_tilt_of_a_nearly_symmetric_body_is_its_tilt():
     c = np.array([0.0, np.cos(0.2), -np.sin(0.2)])
     motion = RigidMotion([10, 10 - 1e-6, 1], 50 * c / [10, 10, 1])
-    assert of_hula.mean_tilt(motion) == pytest.approx(0.2, abs=1e-5)
+    assert motion.mean_tilt == pytest.approx(0.2, abs=1e-5)
 
 
 # ------------------------------------------------------------------------------------- mistakes
