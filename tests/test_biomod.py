@@ -455,6 +455,17 @@ def test_joints_that_move_no_mass_are_left_out(tmp_path: Path) -> None:
     assert said == ["joints that move no mass, and so left out: B_RotX, B_RotY"]
 
 
+def test_words_that_end_nothing_and_variables_without_their_sign(tmp_path: Path) -> None:
+    text = FREE.replace("version 4", "version 4 variables b 1 $c 3 endvariables").format("")
+    model, said = noted(tmp_path, text.replace("mass 1", "mass $c kg") + "endsegment 8\n")
+    assert model.mass == 3
+    assert said == [
+        "words that nobody knows, skipped as biorbd does: b (line 1), kg (line 5)",
+        "words that end nothing: endsegment (line 7)",
+        "numbers between blocks, skipped: 8 (line 7)",
+    ]
+
+
 def test_words_before_the_version_and_versions_with_a_point(tmp_path: Path) -> None:
     text = "A model of mine\n" + FREE.format("").replace("version 4", "version 4.1")
     assert read(tmp_path, text).mass == 1
@@ -466,7 +477,6 @@ MISTAKES = {
     "": (1, "starts with the word version"),
     "version 5": (1, "none of 1, 2, 3 and 4"),
     "version 4\n\nsegmnt A": (3, "'segmnt' is not a word of the format here; did you mean segment"),
-    "version 4\n7": (2, "'7' is one too many"),
     "version 4\n/* open": (2, "never ends"),
     "version 4\nsegment": (2, "the name of the segment"),
     "version 4\nsegment A\nmass 1\nsegment B": (2, "'A' never ends; add endsegment"),
@@ -496,7 +506,8 @@ MISTAKES = {
     "version 1\nsegment A\nrt 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2": (3, "0 0 0 1"),
     "version 4\nvariables\n$a 1\n$a 2": (4, "'$a' is defined twice"),
     "version 4\nvariables\n$a 1\nsegment": (2, "never end"),
-    "version 4\nvariables\nb 1": (3, "'b' is not a variable's name"),
+    "version 4\nvariables\n$-b 1": (3, "'$-b' is not a variable's name"),
+    "version 4\nvariables\n1": (3, "'1' is one too many"),
     "version 4\nmarker M\nposition 0 0 0\nsegment A": (2, "'M' never ends; add endmarker"),
     "segment A\nendsegment\nversion 4": (1, "starts with the word version"),
     "version 4\nsegment A\ninertia 1 0 0 0 1 0 0 0 1\ninertia_xxyyzz 1 1 1": (4, "xxyyzz twice"),
@@ -506,10 +517,11 @@ MISTAKES = {
     "version 4\nsegment A\nmass pi3": (3, "'pi3' is not a number"),
     "version 4\nsegment A\nmass 1,5": (3, "'1,5' is not a number"),
     "version 4\nsegment A\nmuscle m\nsegment B": (3, "'m' never ends; add endmuscle"),
-    "version 4\nsegment P\nendsegment\nsegment A\nmarker m\nparent P\nendmarker": (
+    "version 4\nsegment P\nendsegment\nsegment A\nmarker m\nparent P\nendmarker endsegment": (
         5,
         "the marker 'm' stands within segment 'A'",
     ),
+    "version 4\nsegment A\nmarker m\nparent A\nendmarker endsegment": (3, "the parent 'A' for it"),
 }
 
 

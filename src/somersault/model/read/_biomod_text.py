@@ -88,6 +88,8 @@ class File:
             words.word(f"the value of {key}")
         elif key in BLOCKS:
             self._block(key)
+        elif key in _ENDS:
+            self.strange.add("words that end nothing", self.words.at(word))
         else:
             self._pass_over(word, _TOP)
             return
@@ -98,7 +100,11 @@ class File:
         while (word := self.words.word("endvariables")).lower() != "endvariables":
             if word.lower() in _TOP:
                 raise self.words.error("the variables never end; add endvariables", line)
-            self.words.variable(word)
+            if word.startswith("$"):
+                self._skipping = False
+                self.words.variable(word)
+            else:
+                self._pass_over(word, ["endvariables"])
 
     def _block(self, key: str) -> Block:
         """A block that is no segment: what has no part in flight, or acts but is left out."""
@@ -114,6 +120,9 @@ class File:
         """Skip a word that nobody knows, and numbers after it, as biorbd does."""
         if word[0] in _DIGITS:
             if self._skipping:
+                return
+            if known is _TOP:
+                self.strange.add("numbers between blocks, skipped", self.words.at(word[:40]))
                 return
             raise self.words.error(
                 f"the number {shown(word)} is one too many; remove it or add the word it belongs to"
@@ -146,16 +155,17 @@ class File:
         segment = Segment(name, self.version < 3, parent)  # version 3 turned the default round
         self._skipping = False
         seen: set[str] = set()
-        last = ""
+        last, within = "", None
         while (word := words.next()) is not None:
             key = word.lower()
             if key == "endsegment":
                 if segment.mass == 0 and np.abs(segment.inertia).max() <= DUST:
                     segment.inertia = NOTHING
+                self._check_parent(segment, within)
                 self.segments[name] = segment
                 return
             if words.starts_line and key in BLOCKS:
-                self._within(segment, self._block(key))
+                within = self._block(key)
                 continue
             if key in _ENDS or (words.starts_line and key in _TOP):
                 break
@@ -173,6 +183,7 @@ class File:
                 continue
             self._check_order(segment, key, seen)
             self._skipping = False
+            within = None if key == "parent" else within
             seen.add(last := key)
             self._properties.readers[key](segment, key)
         raise words.error(f"segment {shown(name)} never ends; add endsegment", line)
@@ -192,12 +203,14 @@ class File:
                 self.words.at(f"{key} of {segment.name}"),
             )
 
-    def _within(self, segment: Segment, block: Block) -> None:
-        """A block inside a segment: biorbd takes its parent for the segment's."""
-        parent = block.text("parent")
-        if parent and self._properties.known(parent) not in (segment.parent, None):
+    def _check_parent(self, segment: Segment, within: Block | None) -> None:
+        """Refuse a block inside a segment, below its parent, whose parent biorbd would take for
+        the segment's."""
+        parent = "" if within is None else within.text("parent")
+        if within is not None and parent and self._properties.known(parent) != segment.parent:
             raise self.words.error(
-                f"the {block.key} {shown(block.name)} stands within segment {shown(segment.name)}, "
-                f"which biorbd would hang on the parent {shown(parent)} for it; put it below",
-                block.line,
+                f"the {within.key} {shown(within.name)} stands within segment "
+                f"{shown(segment.name)}, which biorbd would hang on the parent {shown(parent)} for "
+                "it; put it below",
+                within.line,
             )

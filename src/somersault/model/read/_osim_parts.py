@@ -182,14 +182,21 @@ class _Frames:
 
     def __init__(self, words: Words) -> None:
         self._words = words
-        self._bodies = {f"/{GROUND_NAME}": GROUND_NAME}
+        self._bodies: dict[str, str] = {}
         self._offsets: dict[str, Element] = {}
+        self._named: dict[str, list[str]] = {}
+        self.add_body(f"/{GROUND_NAME}", GROUND_NAME)
 
     def add_body(self, path: str, name: str) -> None:
         self._bodies[path] = name
+        self._name(path)
 
     def add(self, path: str, element: Element) -> None:
         self._offsets[path] = element
+        self._name(path)
+
+    def _name(self, path: str) -> None:
+        self._named.setdefault(path.rpartition("/")[2], []).append(path)
 
     def find(self, path: str, at: str, asks: Element) -> tuple[str, Array]:
         """The body to which the frame at a path is fixed, and the frame in it.
@@ -215,7 +222,7 @@ class _Frames:
         if full in self._bodies or full in self._offsets:
             return full
         name = path.rpartition("/")[2]  # OpenSim finds by name what is not at its path
-        named = [p for p in (*self._bodies, *self._offsets) if p.rpartition("/")[2] == name]
+        named = self._named.get(name, [])
         if len(named) != 1:
             raise self._words.error(
                 f"speaks of the frame {path[:80]!r}, of which there are {len(named)}; correct its "
