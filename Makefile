@@ -30,6 +30,7 @@ bench: $(VENV)/.test
 	$(BIN)/python benchmarks/stability_chart.py
 	$(BIN)/python benchmarks/flights.py
 	$(BIN)/python benchmarks/ensembles.py
+	$(BIN)/python benchmarks/films.py
 
 docs: $(VENV)/.docs
 	$(BIN)/mkdocs build --strict --quiet

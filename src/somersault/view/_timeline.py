@@ -87,7 +87,7 @@ def _drawn(figure: Figure, histories: Sequence[History]) -> list[Axes]:
             ("tilt (°)", [("tilt", _COLORS[1])]),
             ("twist (turns)", [("twist", _COLORS[2])]),
         ]
-    joints = _moving(first)
+    joints = _moving(histories)
     slides = [n for n in joints if _kind(first, n) == "slide"]
     turning = [n for n in joints if n not in slides and _kind(first, n) != "ball"]
     for words, names in (("joints (°)", turning), ("slides (m)", slides)):
@@ -131,13 +131,17 @@ def _name_lines(ax: Axes, labels: Sequence[str]) -> None:
     )  # fmt: skip
 
 
-def _moving(history: History) -> list[str]:
-    """The joints that move; all, if none does and there is nothing else to draw."""
-    names = history.model.coordinates
-    swept = np.ptp(history.joint_coordinates, axis=0)
-    return [name for name, way in zip(names, swept, strict=True) if way > _STILL] or (
-        [] if history.model.free else list(names)
-    )
+def _moving(histories: Sequence[History]) -> list[str]:
+    """The first one's joints that move in any; all, if none does and there is nothing else."""
+    model = histories[0].model
+    moving = {
+        name
+        for history in histories
+        for name, values in zip(history.model.coordinates, history.joint_coordinates.T, strict=True)
+        if np.ptp(values) > _STILL
+    }
+    shown = [name for name in model.coordinates if name in moving]
+    return shown if shown or model.free else list(model.coordinates)
 
 
 def _known(history: History) -> tuple[str, ...]:
