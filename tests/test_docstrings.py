@@ -20,13 +20,15 @@ import pytest
 import somersault
 
 SOURCE = Path(somersault.__file__).parent
-ROOMS = ("attitude", "history", "model", "motion", "rigid", "stability", "view")  # examples run
-COMPLETE = ("attitude", "motion", "rigid", "stability")  # whose public calls say all they should
-FOR_USERS = ("attitude", "rigid", "stability")  # rooms in which every call needs an example
+COMPLETE = (  # rooms whose public calls say all that they should, and whose examples run
+    "attitude", "dynamics", "engine", "ensembles", "history", "model", "motion", "rigid", "spec",
+    "stability", "thesis", "view",
+)  # fmt: skip
+FOR_USERS = ("attitude", "rigid", "stability")  # in which every call needs an example
 EXEMPLARY = sorted(
     ".".join(("somersault", *path.relative_to(SOURCE).with_suffix("").parts))
     for path in SOURCE.rglob("*.py")
-    if path.relative_to(SOURCE).parts[0].removesuffix(".py") in ROOMS
+    if path.relative_to(SOURCE).parts[0].removesuffix(".py") in COMPLETE
     and ">>> " in path.read_text(encoding="utf-8")
 )
 _SECTION = re.compile(r"^(\w[\w ]*)\n-{3,}$", re.MULTILINE)

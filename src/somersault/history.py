@@ -124,7 +124,17 @@ class Recording:
 
 
 def summary(history: History) -> str:
-    """One line: what it is, of what model, how many samples, from when to when."""
+    """One line: what it is, of what model, how many samples, from when to when.
+
+    Parameters
+    ----------
+    history : History
+
+    Returns
+    -------
+    str
+        Its model, how many samples it has, and from when to when.
+    """
     first, last = history.times[[0, -1]]
     return (
         f"{type(history).__name__} of {history.model.name}: {len(history.times)} samples, "

@@ -69,11 +69,34 @@ def forward_dynamics(
     gravity: Vec,
     driven: Mapping[int, Scalar] | None = None,
 ) -> tuple[Vec, Vec, list[Scalar]]:
-    """Angular acceleration of a free base, acceleration of its centre of mass, of the joints.
+    """Accelerations by the articulated-body algorithm (Featherstone 1983).
 
-    All in the base's axes (a fixed base: the ground's, and the first two are zero). `torques`
-    act at the joints, `gravity` (m/s²) on everything. `driven` holds the accelerations of the
-    joint speeds that are prescribed, by their places; a ball is driven in all three or in none.
+    Vectors are in the base's axes; for a fixed base in the ground's.
+
+    Parameters
+    ----------
+    tree : Tree
+    q : sequence
+        Joint coordinates.
+    omega : vector
+        Angular velocity of the base, rad/s.
+    speeds : sequence
+        Joint speeds.
+    torques : sequence
+        What acts at each joint speed, N m or N.
+    gravity : vector
+        m/s².
+    driven : mapping of int to number, optional
+        Accelerations that are prescribed, by the place of the joint speed. A ball is driven in all
+        three or in none.
+
+    Returns
+    -------
+    alpha, a : vector
+        Angular acceleration of a free base, rad/s², and acceleration of its own centre of mass,
+        m/s²; zero for a fixed base.
+    accelerations : list
+        Of the joint speeds.
     """
     driven = driven or {}
     placed = placements(tree, q)

@@ -44,13 +44,38 @@ class Composite:
         return madd(self.inertia, [scale(-1.0, row) for row in steiner(self.mass, self.centre)])
 
     def load(self, alpha: Vec, a: Vec) -> tuple[Vec, Vec]:
-        """Moment about the origin and force that accelerate it from rest."""
+        """What accelerates the body from rest.
+
+        Parameters
+        ----------
+        alpha : vector
+            Its angular acceleration, in the link's axes.
+        a : vector
+            The acceleration of its frame's origin.
+
+        Returns
+        -------
+        moment, force : vector
+            The moment is about the origin.
+        """
         moment = vadd(matvec(self.inertia, alpha), cross(self.first_moment, a))
         return moment, vadd(scale(self.mass, a), cross(alpha, self.first_moment))
 
 
 def composite_bodies(tree: Tree, placed: Sequence[Placed]) -> list[Composite]:
-    """Each link with everything outboard of it, in the link's axes."""
+    """Each link and all that is outboard of it as one rigid body.
+
+    Parameters
+    ----------
+    tree : Tree
+    placed : sequence of Placed
+        Its links in a pose, as `placements` returns them.
+
+    Returns
+    -------
+    list of Composite
+        One for each link, in its axes.
+    """
     result = [
         Composite(
             link.mass,
@@ -91,10 +116,19 @@ def _moved(mass: Scalar, first: Vec, p: Vec) -> Mat:
 
 
 def outboard_inertia(tree: Tree, placed: Sequence[Placed]) -> list[Scalar]:
-    """For each joint speed, the inertia (a slide: mass) that it alone would move.
+    """The inertia that each joint speed alone would move, the I of K = k/(Ω² I).
 
-    About the joint's axis with the outboard joints locked, the I of K = k/(Ω² I). For a ball,
-    the moments about its body's axes.
+    Parameters
+    ----------
+    tree : Tree
+    placed : sequence of Placed
+        Its links in a pose, as `placements` returns them.
+
+    Returns
+    -------
+    list
+        About the joint's axis, with the outboard joints locked, kg m²; for a slide the mass, kg;
+        for a ball the moments about its body's axes.
     """
     result: list[Scalar] = []
     for link, whole in zip(tree.links, composite_bodies(tree, placed), strict=True):
@@ -110,9 +144,19 @@ def outboard_inertia(tree: Tree, placed: Sequence[Placed]) -> list[Scalar]:
 
 
 def mass_matrix(tree: Tree, q: Sequence[Scalar]) -> Mat:
-    """M in T = ½ vᵀ M v, v = (ω, velocity of a free base's own centre of mass, joint speeds).
+    """The mass matrix, by composite bodies (Walker and Orin 1982).
 
-    By composite bodies (Walker & Orin 1982). Without a free base, of the joint speeds alone.
+    Parameters
+    ----------
+    tree : Tree
+    q : sequence
+        Joint coordinates.
+
+    Returns
+    -------
+    list of list
+        M in T = ½ vᵀ M v, with v = (ω, velocity of a free base's own centre of mass, joint speeds);
+        without a free base the joint speeds alone.
     """
     placed = placements(tree, q)
     wholes = composite_bodies(tree, placed)

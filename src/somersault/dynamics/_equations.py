@@ -75,7 +75,25 @@ class Equations(SymbolicEquations):
         return np.array([known[name] for name in self.parameters])
 
     def kernel(self, expression: Expression) -> Kernel:
-        """Compiled form, of all arguments; it gives the value raveled by rows."""
+        """The compiled form of an expression.
+
+        Parameters
+        ----------
+        expression : Expression
+            From `expression` or `derivative`, or made elsewhere of the same symbols.
+
+        Returns
+        -------
+        Kernel
+            A function of all its arguments, in order; its result is the value, row by row.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> equations = so.Equations("furrer")
+        >>> equations.kernel(equations.expression("mass_matrix")).outputs  # 8 × 8
+        64
+        """
         if expression not in self._kernels:
             arguments = list(expression.arguments.values())
             flat = ca.cse(ca.densify(ca.vec(expression.value.T)))
@@ -101,6 +119,14 @@ class Equations(SymbolicEquations):
         ------
         SomersaultError
             For arguments that the expression does not have, or that do not fit it.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> equations = so.Equations("furrer")
+        >>> inertia = equations.expression("inertia")
+        >>> equations.evaluate(inertia, q=[1.4, -1.4]).shape
+        (3, 3)
         """
         for name in arguments:
             if name not in expression.arguments:
@@ -159,6 +185,14 @@ class Equations(SymbolicEquations):
         -------
         array (…, speeds)
             The accelerations that belong to v, of the base's frame in inertial space.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> equations = so.Equations("book")
+        >>> spin = equations.forward_dynamics([], [0.0, 3.0, 0.0, 0.0, 0.0, 0.0])
+        >>> bool(abs(spin).max() < 1e-12)  # a spin about a principal axis is steady
+        True
         """
         return self._column(
             "forward_dynamics", q=q, v=v, torques=torques, gravity=gravity, parameters=parameters
@@ -186,6 +220,15 @@ class Equations(SymbolicEquations):
         array (…, speeds)
             Moment about a free base's origin and force on it, in its axes, then what must act at
             the joints besides the springs and dampers.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> equations = so.Equations("furrer")
+        >>> spin = [0.0, 8.64, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+        >>> holding = equations.inverse_dynamics([1.4, -1.4], spin, [0.0] * 8)[6:]
+        >>> holding.shape  # what holds the arms against the spin, N m
+        (2,)
         """
         return self._column(
             "inverse_dynamics", q=q, v=v, a=a, gravity=gravity, parameters=parameters
@@ -202,6 +245,12 @@ class Equations(SymbolicEquations):
         Returns
         -------
         array (…, speeds, speeds)
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> so.Equations("furrer").mass_matrix([1.4, -1.4]).shape
+        (8, 8)
         """
         return self.evaluate(self.expression("mass_matrix"), **_given(q=q, parameters=parameters))
 
@@ -218,6 +267,14 @@ class Equations(SymbolicEquations):
         array (…, 6)
             Angular momentum about the centre of mass (for a fixed base about the ground's origin),
             kg m²/s, then linear momentum, kg m/s, in the base's axes.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> equations = so.Equations("furrer")
+        >>> momentum = equations.momentum([1.4, -1.4], [0.0, 8.64, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+        >>> momentum.shape
+        (6,)
         """
         return self._column("momentum", q=q, v=v, parameters=parameters)
 
@@ -235,6 +292,13 @@ class Equations(SymbolicEquations):
         -------
         array (…)
             J.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> equations = so.Equations("furrer")
+        >>> float(equations.kinetic_energy([1.4, -1.4], [0.0] * 8))
+        0.0
         """
         return self._column("kinetic_energy", q=q, v=v, parameters=parameters)[..., 0]
 
@@ -250,6 +314,12 @@ class Equations(SymbolicEquations):
         -------
         array (…)
             J.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> float(so.Equations("furrer").spring_energy([1.4, -1.4]))  # its joints have no springs
+        0.0
         """
         return self._column("spring_energy", q=q, parameters=parameters)[..., 0]
 
@@ -270,6 +340,12 @@ class Equations(SymbolicEquations):
         ------
         SomersaultError
             For a model whose base is fixed.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> so.Equations("furrer").inertia([[0.0, 0.0], [1.4, -1.4]]).shape
+        (2, 3, 3)
         """
         return self.evaluate(self.expression("inertia"), **_given(q=q, parameters=parameters))
 
@@ -285,6 +361,12 @@ class Equations(SymbolicEquations):
         -------
         array (…, joint speeds)
             kg m²; for a slide the mass, kg.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> so.Equations("furrer").outboard_inertia([1.4, -1.4]).shape
+        (2,)
         """
         return self._column("outboard_inertia", q=q, parameters=parameters)
 

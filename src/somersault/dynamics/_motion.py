@@ -23,7 +23,18 @@ class Placed:
 
 
 def placements(tree: Tree, q: Sequence[Scalar]) -> list[Placed]:
-    """Every link's turn and position at the joint coordinates q."""
+    """Every link in a pose.
+
+    Parameters
+    ----------
+    tree : Tree
+    q : sequence
+        Joint coordinates.
+
+    Returns
+    -------
+    list of Placed
+    """
     return [_placed(link, q) for link in tree.links]
 
 

@@ -39,10 +39,33 @@ def inverse_dynamics(
     acceleration: Vec,
     joint_accelerations: Sequence[Scalar],
 ) -> tuple[Vec, Vec, list[Scalar]]:
-    """Moment about a free base's centre of mass, force on it, and joint torques (forces).
+    """What must act for given accelerations, by the recursive Newton–Euler algorithm.
 
-    What must act for the base to have the angular acceleration `alpha` and its centre of
-    mass `acceleration`, and the joints theirs. A uniform gravity g is an `acceleration` less g.
+    Vectors are in the base's axes; for a fixed base in the ground's. In a uniform gravity g,
+    `acceleration` is the base's own less g.
+
+    Parameters
+    ----------
+    tree : Tree
+    q : sequence
+        Joint coordinates.
+    omega : vector
+        Angular velocity of the base, rad/s.
+    speeds : sequence
+        Joint speeds.
+    alpha : vector
+        Angular acceleration of the base, rad/s².
+    acceleration : vector
+        Acceleration of its own centre of mass, m/s².
+    joint_accelerations : sequence
+        Of the joint speeds.
+
+    Returns
+    -------
+    moment, force : vector
+        On a free base; the moment is about its own centre of mass, N m. Zero for a fixed base.
+    torques : list
+        At the joint speeds, N m or N.
     """
     placed = placements(tree, q)
     moving = rates(placed, omega, speeds)
@@ -115,9 +138,24 @@ class Momentum:
 def momentum(
     tree: Tree, q: Sequence[Scalar], omega: Vec, velocity: Vec, speeds: Sequence[Scalar]
 ) -> Momentum:
-    """Momentum and kinetic energy; `velocity` is that of a free base's centre of mass.
+    """Momentum and kinetic energy.
 
-    For a fixed base the angular momentum is about the ground's origin.
+    Parameters
+    ----------
+    tree : Tree
+    q : sequence
+        Joint coordinates.
+    omega : vector
+        Angular velocity of the base, rad/s.
+    velocity : vector
+        Of a free base's own centre of mass, m/s.
+    speeds : sequence
+        Joint speeds.
+
+    Returns
+    -------
+    Momentum
+        In the base's axes. For a fixed base the angular momentum is about the ground's origin.
     """
     placed = placements(tree, q)
     moving = rates(placed, omega, speeds)

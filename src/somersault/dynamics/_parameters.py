@@ -27,7 +27,18 @@ def joint_parameter(joint: str, kind: str) -> str:
 
 
 def body_kind(name: str) -> str | None:
-    """What a name says of a body: its mass, com, inertia or position; None for any other name."""
+    """What a parameter's name says of a body.
+
+    Parameters
+    ----------
+    name : str
+        As in `parameter_values`.
+
+    Returns
+    -------
+    str or None
+        "mass", "com", "inertia" or "position"; None for a name of anything else.
+    """
     match = _OF_A_BODY.fullmatch(name)
     return None if match is None else match[1]
 

@@ -23,10 +23,18 @@ MOST_JOINTS = 3  # beyond this nobody reads a page of LaTeX
 
 
 def c_code(model: Model) -> str:
-    """C of every quantity of a model (see `Equations`), one function for each.
+    """C code of every quantity of a model, one function for each.
 
-    Made by CasADi's code generator: `int NAME(const double** arg, double** res, ...)` with
-    matrices by columns; the header comment lists the arguments.
+    It comes from CasADi's code generator: `int NAME(const double** arg, double** res, ...)`, with
+    matrices by columns. The header comment lists the arguments.
+
+    Parameters
+    ----------
+    model : Model
+
+    Returns
+    -------
+    str
     """
     equations = Equations(model)
     names = [n for n in Equations.QUANTITIES if model.free or n != "inertia"]
@@ -53,8 +61,20 @@ def _comment(text: str) -> str:
 def latex(model: Model) -> str:
     """LaTeX of the equations of motion, with a table of the symbols' values.
 
-    A fixed base hangs in gravity g along its −3 axis. Raises SomersaultError for a model with
-    more joints than anyone would read, or with ball joints.
+    A fixed base hangs in gravity g along its −3 axis.
+
+    Parameters
+    ----------
+    model : Model
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    SomersaultError
+        For a model with more joints than anyone would read, or with ball joints.
     """
     joints = len(model.joints)
     if joints > MOST_JOINTS or any(joint.kind == "ball" for joint in model.joints):

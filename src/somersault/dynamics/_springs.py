@@ -38,9 +38,24 @@ def spring_torques(
     rest: Scalar,
     damping: Scalar,
 ) -> list[Scalar]:
-    """What one joint's spring and damper do at each of its speeds, N m (N for a slide).
+    """What a joint's spring and damper do.
 
-    `q` and `speeds` are the joint's own.
+    Parameters
+    ----------
+    joint : Joint
+    q, speeds : sequence
+        The joint's own coordinates and speeds.
+    stiffness : number
+        N m/rad (N/m).
+    rest : number
+        Where the spring is slack, rad (m).
+    damping : number
+        N m s/rad (N s/m).
+
+    Returns
+    -------
+    list
+        At each of its speeds, N m (N).
     """
     spring = scale(stiffness, _stretch(joint, q, stiffness, rest))
     damper = scale(damping, list(speeds))

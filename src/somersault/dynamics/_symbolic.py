@@ -36,7 +36,13 @@ class Expression:
     value: Any
 
     def function(self) -> ca.Function:
-        """As a CasADi function with one argument for each name."""
+        """The expression as a CasADi function.
+
+        Returns
+        -------
+        casadi.Function
+            With one argument for each name.
+        """
         return ca.Function(
             self.name,
             list(self.arguments.values()),

@@ -57,8 +57,18 @@ Symbols = Mapping[str, Any]
 
 
 def link_tree(model: Model, symbols: Symbols | None = None) -> Tree:
-    """The links of a model; numbers that `symbols` has, by the names of `parameter_values`, are
-    the symbols given."""
+    """The links of a model.
+
+    Parameters
+    ----------
+    model : Model
+    symbols : mapping of str to symbol, optional
+        Stand for numbers of the model, by the names of `parameter_values`.
+
+    Returns
+    -------
+    Tree
+    """
     symbols = symbols or {}
     links: list[Link] = []
     stands: list[_Stand] = []

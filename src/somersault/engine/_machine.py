@@ -11,8 +11,18 @@ _ROUNDING = ("fma", "fma4", "avx2", "avx512f", "neon", "sve")  # as LLVM calls t
 
 
 def compiled(*modules: str) -> Any:
-    """An engine with the functions of LLVM modules, which may call one another's;
-    `compiled_function` takes one from it."""
+    """Machine code of LLVM modules, for this processor.
+
+    Parameters
+    ----------
+    *modules : str
+        LLVM assembly; the modules may call one another's functions.
+
+    Returns
+    -------
+    llvmlite.binding.ExecutionEngine
+        `compiled_function` takes a function from it.
+    """
     import llvmlite.binding as llvm
 
     llvm.initialize_native_target()
@@ -33,9 +43,22 @@ def compiled(*modules: str) -> Any:
 
 
 def compiled_function(engine: Any, name: str, *arguments: Any) -> Callable[..., None]:
-    """A compiled function of arguments of these C types, which returns nothing.
+    """A compiled function that can be called; it returns nothing.
 
     It keeps its engine, and so its code, as long as it lives.
+
+    Parameters
+    ----------
+    engine : llvmlite.binding.ExecutionEngine
+        As `compiled` returns it.
+    name : str
+        Of the function in its module.
+    *arguments : ctypes type
+        Of the function's arguments.
+
+    Returns
+    -------
+    callable
     """
     pointer = ctypes.CFUNCTYPE(None, *arguments)(engine.get_function_address(name))
     pointer.engine = engine  # type: ignore[attr-defined]
@@ -44,8 +67,14 @@ def compiled_function(engine: Any, name: str, *arguments: Any) -> Callable[..., 
 
 @cache
 def processor() -> str:
-    """The kind of processor that code is compiled for here, with what decides how it rounds: which
-    multiply-adds are fused, and how wide vectors are."""
+    """The kind of processor that code is compiled for here.
+
+    Returns
+    -------
+    str
+        LLVM's name of it, and what decides how it rounds: which multiply-adds are fused, and how
+        wide its vectors are.
+    """
     import llvmlite.binding as llvm
 
     features = llvm.get_host_cpu_features()

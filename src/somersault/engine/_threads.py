@@ -13,13 +13,24 @@ _chosen: ContextVar[int | None] = ContextVar("threads", default=None)
 
 
 def threads() -> int:
-    """How many threads compiled code uses: those chosen, or one for each core."""
+    """How many threads compiled code uses.
+
+    Returns
+    -------
+    int
+        The number that `use_threads` set, or one for each core.
+    """
     return _chosen.get() or cores()
 
 
 @cache
 def cores() -> int:
-    """Cores that this process may use."""
+    """Cores that this process may use.
+
+    Returns
+    -------
+    int
+    """
     if hasattr(os, "sched_getaffinity"):
         return max(1, len(os.sched_getaffinity(0)))
     return os.cpu_count() or 1
@@ -27,7 +38,24 @@ def cores() -> int:
 
 @contextmanager
 def use_threads(count: int | None) -> Iterator[None]:
-    """Within the block, compiled code uses so many threads (None: one for each core)."""
+    """Within the block, compiled code uses this many threads.
+
+    Parameters
+    ----------
+    count : int or None
+        None: one for each core.
+
+    Yields
+    ------
+    None
+
+    Examples
+    --------
+    >>> from somersault.engine import threads, use_threads
+    >>> with use_threads(1):
+    ...     threads()
+    1
+    """
     before = _chosen.set(count)
     try:
         yield
@@ -36,7 +64,13 @@ def use_threads(count: int | None) -> Iterator[None]:
 
 
 def pool() -> ThreadPoolExecutor:
-    """As many threads as `threads` says, kept from one call to the next."""
+    """The threads of compiled code, kept from one call to the next.
+
+    Returns
+    -------
+    concurrent.futures.ThreadPoolExecutor
+        With as many threads as `threads` says.
+    """
     return _pool(threads())
 
 

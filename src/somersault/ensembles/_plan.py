@@ -75,12 +75,33 @@ class Plan:
         return [name for name, vary in self.vary.items() if vary.grid is None]
 
     def drawn(self, places: Array) -> dict[str, Array]:
-        """Values of what runs along `sample`, at rising places."""
+        """Values of the varied quantities that run along `sample`.
+
+        Parameters
+        ----------
+        places : ndarray of int, (n,)
+            Along `sample`, in rising order.
+
+        Returns
+        -------
+        dict of str to ndarray, (n,)
+            By the names of `along_samples`, in the unit of each.
+        """
         along = {name: self.vary[name] for name in self.along_samples}
         return _vary.draws(along, self.sequence, self.seed, places)
 
     def varied(self, first: int, last: int) -> dict[str, Array]:
-        """Every varied quantity of runs first … last − 1."""
+        """Values of every varied quantity of some runs.
+
+        Parameters
+        ----------
+        first, last : int
+            Runs first … last − 1.
+
+        Returns
+        -------
+        dict of str to ndarray, (last − first,)
+        """
         dims = self.dims
         at = dict(
             zip(dims, np.unravel_index(np.arange(first, last), tuple(dims.values())), strict=True)
@@ -93,9 +114,19 @@ class Plan:
         return given
 
     def run(self, first: int, last: int) -> dict[str, Array]:
-        """The variables of runs first … last − 1.
+        """Carry out some runs.
 
-        The numbers of each depend on nothing but its own place.
+        The numbers of each depend on nothing but its place, not on the runs it is carried out with.
+
+        Parameters
+        ----------
+        first, last : int
+            Runs first … last − 1.
+
+        Returns
+        -------
+        dict of str to ndarray, (last − first, …)
+            By the names of `variables`.
         """
         given = self.varied(first, last)
         edges = [*range(0, last - first, self.simulation.together), last - first]

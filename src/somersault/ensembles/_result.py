@@ -42,6 +42,17 @@ class Ensemble:
         ------
         SomersaultError
             Where there is none.
+
+        Examples
+        --------
+        >>> from tempfile import TemporaryDirectory
+        >>> import somersault as so
+        >>> vary = {"leant": so.Vary(adds_to="takeoff.tilt", normal=[0.0, 0.05])}
+        >>> with TemporaryDirectory() as folder:
+        ...     file = f"{folder}/leant.nc"
+        ...     _ = so.ensemble("furrer", so.Takeoff(spin=8.64), 1.0, vary, size=4, out=file)
+        ...     dict(so.Ensemble.open(file).dataset.sizes)
+        {'sample': 4}
         """
         file = store_path("path", path)
         if not file.exists():
@@ -131,6 +142,14 @@ class Ensemble:
         ------
         SomersaultError
             For what does not fit.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> vary = {"leant": so.Vary(adds_to="takeoff.tilt", normal=[0.0, 0.05])}
+        >>> flights = so.ensemble("furrer", so.Takeoff(spin=8.64), 1.0, vary, size=20)
+        >>> dict(flights.quantiles("tilt", [0.05, 0.95]).sizes)
+        {'quantile': 2}
         """
         from somersault.ensembles._summary import quantiles
 
@@ -155,6 +174,16 @@ class Ensemble:
         ------
         SomersaultError
             Where nothing is drawn, or there are too few samples.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> vary = {
+        ...     "leant": so.Vary(adds_to="takeoff.tilt", normal=[0.0, 0.05]),
+        ...     "turned": so.Vary(adds_to="takeoff.twist", normal=[0.0, 0.05]),
+        ... }
+        >>> flights = so.ensemble("furrer", so.Takeoff(spin=8.64), 1.0, vary, size=500)
+        >>> ranked = flights.sensitivity("tilt")
         """
         from somersault.ensembles._sensitivity import sensitivity
 
@@ -176,6 +205,15 @@ class Ensemble:
         ------
         SomersaultError
             For more than two grids, or where all flights failed.
+
+        Examples
+        --------
+        >>> from tempfile import TemporaryDirectory
+        >>> import somersault as so
+        >>> vary = {"leant": so.Vary(adds_to="takeoff.tilt", normal=[0.0, 0.05])}
+        >>> flights = so.ensemble("furrer", so.Takeoff(spin=8.64), 1.0, vary, size=20)
+        >>> with TemporaryDirectory() as folder:
+        ...     flights.plot("tilt").savefig(f"{folder}/tilt.svg")
         """
         from somersault.ensembles._plot import plot
 

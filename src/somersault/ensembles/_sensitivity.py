@@ -77,12 +77,25 @@ def sensitivity(data: xr.Dataset, name: str, confidence: float = 0.95, seed: int
 
 
 def quick_sensitivity(data: xr.Dataset, names: Sequence[str]) -> tuple[dict[str, xr.Dataset], int]:
-    """As `sensitivity`, of each name, in a second or so however many samples there are, and how
-    many of them each is from. Without half-widths.
+    """As `sensitivity`, for several quantities, in about a second however many samples there are.
 
-    Of too many, some are taken at random: evenly spaced points of a sobol or halton sequence
-    miss whole parts of the space, and the first of listed samples may be alike. The estimator of
-    a saltelli sequence is quick, and takes all.
+    Of too many samples some are taken at random: evenly spaced points of a sobol or halton sequence
+    miss whole parts of the space, and the first of listed samples may be alike. The estimator of a
+    saltelli sequence is quick, and takes all.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Of an ensemble.
+    names : sequence of str
+        Of reported quantities.
+
+    Returns
+    -------
+    rankings : dict of str to xarray.Dataset
+        As `sensitivity` returns them, without half-widths.
+    used : int
+        How many samples each of them is from.
     """
     specification = json.loads(data.attrs["specification"])
     size = data.sizes[SAMPLE]

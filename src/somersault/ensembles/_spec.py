@@ -62,12 +62,44 @@ class EnsembleSpec:
 
 
 def read_ensemble(path: Path) -> EnsembleSpec:
-    """The ensemble in a TOML file; SomersaultError, naming the key, for what does not fit."""
+    """The ensemble in a TOML file, a SPEC as `somersault ensemble` takes it.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Files that it names are looked for in the same folder.
+
+    Returns
+    -------
+    EnsembleSpec
+
+    Raises
+    ------
+    SomersaultError
+        Naming the key, for what does not fit.
+    """
     return parse_ensemble(read_toml(path), path.parent)
 
 
 def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
-    """The ensemble in a SPEC's tables."""
+    """The ensemble in a SPEC's tables.
+
+    Parameters
+    ----------
+    given : mapping
+        As TOML has it.
+    beside : pathlib.Path
+        The folder in which files that it names are looked for.
+
+    Returns
+    -------
+    EnsembleSpec
+
+    Raises
+    ------
+    SomersaultError
+        Naming the key, for what does not fit.
+    """
     for key in _TABLES:
         if not isinstance(given.get(key, {}), Mapping):
             raise SomersaultError(f"{key} must be a table; write [{key}]")

@@ -231,10 +231,23 @@ def _over(values: xr.DataArray, over: str | Sequence[str]) -> list[str]:
 
 
 def summary(data: xr.Dataset, tolerance: float | None = None) -> dict[str, Any]:
-    """The whole ensemble in a few numbers: endings, quantiles of what is reported, share of
-    landings within tolerance.
+    """The whole ensemble in a few numbers.
 
-    Exact, and read a million flights at a time however many there are.
+    They are exact, and are read a million flights at a time, however many there are.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Of an ensemble.
+    tolerance : float, optional
+        Of the landing error, rad.
+
+    Returns
+    -------
+    dict
+        "flights", how many; "ended", how many ended how; "reported", the 5, 50 and 95 % quantiles
+        of each quantity with its unit; and with a tolerance "within_tolerance", the share of
+        landings within it.
     """
     ended = data[ENDED]
     row: dict[str, Any] = {"flights": int(ended.size), "ended": endings(data)}

@@ -122,7 +122,25 @@ class Vary:
         return None if self.values is None else _listed(self.values)
 
     def quantile(self, u: Array) -> Array:
-        """Values at uniform draws u in (0, 1); inf where they are too large for a number."""
+        """Values of the distribution at some probabilities.
+
+        Parameters
+        ----------
+        u : ndarray, (n,)
+            In (0, 1).
+
+        Returns
+        -------
+        ndarray, (n,)
+            Where the distribution function is u; inf where that is too large for a number.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import somersault as so
+        >>> so.Vary("takeoff.tilt", uniform=[0.0, 0.2]).quantile(np.array([0.25, 0.5]))
+        array([0.05, 0.1 ])
+        """
         assert self.distribution is not None
         given = [float(x) for x in getattr(self, self.distribution)]
         with np.errstate(over="ignore"):

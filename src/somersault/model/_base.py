@@ -165,10 +165,16 @@ def root(bodies: Sequence[Body], base: str) -> tuple[Body, ...]:
 
 
 def base_on_its_joints(model: Model) -> Model | None:
-    """The base alone, on the joints to the ground on which the model's file has it; None if the
-    file has it on none.
+    """The base alone, on the joints that connect it to the ground in the model's file.
 
-    Its frame is that of the base; its masses mean nothing.
+    Parameters
+    ----------
+    model : Model
+
+    Returns
+    -------
+    Model or None
+        Its frame is that of the base; its masses mean nothing. None if the file has no such joints.
     """
     chain = [
         replace(body, mass=1.0, com=ZERO, inertia=IDENTITY, shapes=())

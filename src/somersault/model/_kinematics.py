@@ -74,6 +74,11 @@ def centre_of_mass(model: Model, q: ArrayLike) -> Array:
     model : Model
     q : array_like, (…, coordinates)
         Joint coordinates.
+
+    Returns
+    -------
+    ndarray, (…, 3)
+        m, in the base's axes.
     """
     return _centres(model, *body_frames(model, q))[1]
 

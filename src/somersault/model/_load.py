@@ -25,7 +25,19 @@ _SHIPPED = files("somersault.model") / "shipped"
 
 @cache
 def shipped() -> tuple[str, ...]:
-    """Names of the models that ship with the package."""
+    """Names of the models that ship with the package.
+
+    Returns
+    -------
+    tuple of str
+        In alphabetical order.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> "furrer" in so.shipped()
+    True
+    """
     return tuple(sorted(f.name[:-4] for f in _SHIPPED.iterdir() if f.name.endswith(".xml")))
 
 
@@ -52,6 +64,10 @@ def load(
         "fixed" holds the base that the file has free. By default what the file says: in MJCF a
         free joint, in a .bioMod the root's six degrees of freedom; a URDF's root link is free
         unless it is called `world` or is a mere frame, without mass and with one joint on it.
+
+    Returns
+    -------
+    Model
 
     Raises
     ------

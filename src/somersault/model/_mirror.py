@@ -300,7 +300,18 @@ def _side(name: str) -> str | None:
 
 
 def common_name(left: str, right: str) -> str:
-    """What two mirrored names share: left_shoulder and right_shoulder are `shoulder`."""
+    """The part of their names that two mirrored joints share.
+
+    Parameters
+    ----------
+    left, right : str
+
+    Returns
+    -------
+    str
+        Of left_shoulder and right_shoulder "shoulder"; both names, joined by a plus sign, where
+        they share nothing.
+    """
     if left == right:
         return left
     one, two = (re.sub(r"[_\-. ]{2,}", "_", _SIDE.sub("", n, count=1)) for n in (left, right))

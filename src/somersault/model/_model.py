@@ -119,7 +119,27 @@ class Model:
         return np.array(values)
 
     def joint(self, name: str) -> Joint:
-        """The joint of that name; SomersaultError, with the names there are, if none is."""
+        """The joint of a name.
+
+        Parameters
+        ----------
+        name : str
+
+        Returns
+        -------
+        Joint
+
+        Raises
+        ------
+        SomersaultError
+            For a name that no joint has.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> so.load("furrer").joint("left_shoulder").kind
+        'hinge'
+        """
         for joint in self.joints:
             if joint.name == name:
                 return joint
@@ -128,15 +148,72 @@ class Model:
         )
 
     def coordinate_slice(self, name: str) -> slice:
-        """Where that joint's coordinates stand in a coordinate vector."""
+        """Where a joint's coordinates stand in a coordinate vector.
+
+        Parameters
+        ----------
+        name : str
+            Of the joint.
+
+        Returns
+        -------
+        slice
+
+        Raises
+        ------
+        SomersaultError
+            For a name that no joint has.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> so.load("furrer").coordinate_slice("right_shoulder")
+        slice(1, 2, None)
+        """
         return _slice(self.joints, self.joint(name), "coordinates")
 
     def speed_slice(self, name: str) -> slice:
-        """Where that joint's speeds stand in a vector of joint speeds."""
+        """Where a joint's speeds stand in a vector of joint speeds.
+
+        Parameters
+        ----------
+        name : str
+            Of the joint.
+
+        Returns
+        -------
+        slice
+
+        Raises
+        ------
+        SomersaultError
+            For a name that no joint has.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> so.load("furrer").speed_slice("right_shoulder")
+        slice(1, 2, None)
+        """
         return _slice(self.joints, self.joint(name), "speeds")
 
     def renamed(self, name: str) -> Model:
-        """The same model under another name."""
+        """The same model under another name.
+
+        Parameters
+        ----------
+        name : str
+
+        Returns
+        -------
+        Model
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> so.load("furrer").renamed("Furrer, Zürich").name
+        'Furrer, Zürich'
+        """
         return replace(self, name=name)
 
 

@@ -14,12 +14,30 @@ IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 def as_vector(array: Array) -> Vector:
-    """Three numbers of an array as the tuple that the model types hold."""
+    """An array as the tuple that the model's types hold.
+
+    Parameters
+    ----------
+    array : ndarray, shape (3,)
+
+    Returns
+    -------
+    tuple of float
+    """
     x, y, z = array.tolist()
     return (x, y, z)
 
 
 def as_matrix(array: Array) -> Matrix:
-    """A 3 x 3 array as the tuple of rows that the model types hold."""
+    """An array as the tuple of rows that the model's types hold.
+
+    Parameters
+    ----------
+    array : ndarray, shape (3, 3)
+
+    Returns
+    -------
+    tuple of tuple of float
+    """
     first, second, third = (as_vector(row) for row in array)
     return (first, second, third)

@@ -47,6 +47,10 @@ def structured(table: Any, kind: type[T], where: str = "") -> T:
     where : str
         What stands before a key in a message: "takeoff.", say.
 
+    Returns
+    -------
+    kind
+
     Raises
     ------
     SomersaultError
@@ -59,12 +63,36 @@ def structured(table: Any, kind: type[T], where: str = "") -> T:
 
 
 def structured_within(value: Any, kind: Any) -> Any:
-    """The same for a hook of `read_as`, whose own key is known further out."""
+    """A dataclass of a table, for a hook of `read_as`.
+     As `structured`, but what does not fit is reported by the call of `structured` that runs the
+    hook, with the whole key.
+
+    Parameters
+    ----------
+    value
+        As TOML has it.
+    kind : type
+
+    Returns
+    -------
+    kind
+    """
     return _converter().structure(value, kind)
 
 
 def plain(value: Any) -> Any:
-    """A value as TOML has it: dataclasses as tables, without what is as it is by default."""
+    """A value as TOML has it.
+
+    Parameters
+    ----------
+    value
+        A dataclass, mapping, array, sequence, number or text.
+
+    Returns
+    -------
+    dict, list, number or str
+        A dataclass is a table of those fields that are not at their default.
+    """
     for kind, how in _plain.items():
         if isinstance(value, kind):
             return how(value)
@@ -84,13 +112,28 @@ def plain(value: Any) -> Any:
 
 
 def read_as(kind: Any, hook: Hook) -> None:
-    """Have values of a type structured by `hook(value, type)`."""
+    """Register how values of a type are read.
+
+    Parameters
+    ----------
+    kind : type
+    hook : callable
+        Of the value as TOML has it and the type; it returns what is to be in the field, or raises
+        `Unfit`.
+    """
     _hooks[kind] = hook
     _converter.cache_clear()
 
 
 def written_as(kind: type, how: Callable[[Any], Any]) -> None:
-    """Have values of a class made plain by a function."""
+    """Register how values of a class are written.
+
+    Parameters
+    ----------
+    kind : type
+    how : callable
+        Of the value; it returns what TOML can hold.
+    """
     _plain[kind] = how
 
 

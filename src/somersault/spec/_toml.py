@@ -14,7 +14,22 @@ _MOST_BYTES = 10_000_000
 
 
 def read_toml(path: Path) -> dict[str, Any]:
-    """The tables of a TOML file; SomersaultError for a file that is none."""
+    """The tables of a TOML file.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Of a file of at most 10 MB.
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    SomersaultError
+        For a file that is not there, is too large, or is not TOML.
+    """
     if not path.is_file():
         raise SomersaultError(f"there is no SPEC file {str(path)!r}; check the path")
     if path.stat().st_size > _MOST_BYTES:
@@ -28,7 +43,13 @@ def read_toml(path: Path) -> dict[str, Any]:
 
 
 def write_toml(path: Path, tables: Mapping[str, Any]) -> None:
-    """Write tables as a TOML file, whole or not at all."""
+    """Write tables as a TOML file, whole or not at all.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    tables : mapping
+    """
     import tomli_w
 
     write(path, tomli_w.dumps(tables))

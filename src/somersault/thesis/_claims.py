@@ -47,7 +47,12 @@ class Claim:
     note: str = ""
 
     def record(self) -> dict[str, Any]:
-        """The claim as claims.json has it."""
+        """The claim as claims.json has it.
+
+        Returns
+        -------
+        dict
+        """
         return asdict(self)
 
 

@@ -91,9 +91,22 @@ class Entry:
 
     @classmethod
     def of(cls, package: str, id: str, title: str, source: str, beyond: bool = False) -> Entry:
-        """An entry whose `source`, "module.function", stands in a chapter's folder.
+        """An entry whose function stands in a chapter's folder.
 
-        `package` is the folder's `__name__`. The function takes nothing and returns a `Result`.
+        Parameters
+        ----------
+        package : str
+            The folder's `__name__`.
+        id, title : str
+            As in `Entry`.
+        source : str
+            "module.function", within the folder. The function takes nothing and returns a `Result`.
+        beyond : bool
+            Whether the thesis does not contain it.
+
+        Returns
+        -------
+        Entry
         """
         module, _, function = source.rpartition(".")
         chapter = package.rpartition(".")[2]

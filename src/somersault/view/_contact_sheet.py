@@ -91,6 +91,13 @@ def strip(
     size : float, optional
         Room for each, in m from its centre of mass: as far as any of them reaches, if it is not
         given.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> from matplotlib.figure import Figure
+    >>> flight, axes = so.fly("furrer", so.Takeoff(spin=8.6), 0.5), Figure().subplots()
+    >>> so.view.strip(axes, flight, [0.0, 0.25, 0.5])
     """
     model = history.model
     size = _size(history, times) if size is None else size

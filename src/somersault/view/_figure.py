@@ -32,6 +32,12 @@ def camera(azimuth: float, elevation: float, axes: BodyAxes = AXES) -> Array:
     -------
     ndarray, (3, 3)
         Rows right, up and towards the eye.
+
+    Examples
+    --------
+    >>> from somersault.view import camera
+    >>> camera(0.0, 0.0).round(12).tolist()  # from the front: the body's left is on the right
+    [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]
     """
     a, e = np.radians([azimuth, elevation])
     eye = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
@@ -85,6 +91,17 @@ def draw_pose(
         Where the centre of mass stands in the picture, m.
     color, base : str
         Of what moves against the base, and of the base.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import somersault as so
+    >>> from matplotlib.figure import Figure
+    >>> model, axes = so.load("furrer"), Figure().subplots()
+    >>> q = so.model.pose(model, {"shoulder": 1.3})
+    >>> so.view.draw_pose(axes, model, q, np.eye(3), so.view.camera(0.0, 0.0))
+    >>> len(axes.patches) > 0
+    True
     """
     from matplotlib.patches import Polygon
 

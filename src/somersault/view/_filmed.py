@@ -58,6 +58,10 @@ class Filmed:
             s.
         **look
             As of a film.
+
+        Returns
+        -------
+        ndarray of uint8, (height, width, 3)
         """
         return frame(self, time, **look)  # type: ignore[arg-type]
 

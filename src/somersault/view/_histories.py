@@ -31,6 +31,14 @@ def time_histories(history: History, title: str = "") -> Figure:
     -------
     matplotlib.figure.Figure
         Its `.savefig(file)` writes it.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import somersault as so
+    >>> flight = so.fly("furrer", so.Takeoff(spin=8.6, tilt=0.05), 0.5)
+    >>> with TemporaryDirectory() as folder:
+    ...     so.view.time_histories(flight).savefig(f"{folder}/flight.svg")
     """
     from matplotlib.figure import Figure
 

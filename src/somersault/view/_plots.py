@@ -24,6 +24,15 @@ def stability_chart(chart: xr.Dataset) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import somersault as so
+    >>> arms, springs = ("pose.shoulder", [0.5, 1.3]), ("stiffness.shoulder", [0.5, 1.2])
+    >>> chart = so.stability.chart("furrer", arms, springs)
+    >>> with TemporaryDirectory() as folder:
+    ...     so.view.stability_chart(chart).savefig(f"{folder}/chart.svg")
     """
     y_name, x_name = (str(name) for name in chart.stable.dims)
     x, y = chart[x_name].values, chart[y_name].values
@@ -68,6 +77,15 @@ def root_loci(loci: xr.Dataset) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> import somersault as so
+    >>> along = ("stiffness.shoulder", [0.5, 1.0, 1.5])
+    >>> loci = so.stability.root_locus("furrer", along, pose={"shoulder": 1.3})
+    >>> with TemporaryDirectory() as folder:
+    ...     so.view.root_loci(loci).savefig(f"{folder}/roots.svg")
     """
     (name,) = (str(n) for n in loci.coords)
     values = loci[name].values

@@ -62,6 +62,12 @@ def athlete_from_measurements(
     SomersaultError
         If yeadon is not installed, for a file or measurement that cannot be used, measurements that
         enclose no body, and a mass outside 10 to 250 kg.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> so.athlete_from_measurements("me.txt", mass=62.0).mass  # doctest: +SKIP
+    62.0
     """
     try:
         human_type = import_module("yeadon").Human
