@@ -121,6 +121,13 @@ def test_whatever_a_behaviour_declares_can_be_varied(path: str, field: str, unit
     assert np.ptp(data.twist.values) > 1e-6
 
 
+def test_what_is_planned_in_a_line() -> None:
+    many = so.flight.flights(TWIST.model, TWIST.takeoff, 0.6)
+    assert repr(many) == "Flights(furrer, 0.6 s)"
+    vary = {**VARY, "late": so.Vary(adds_to="joints.left_shoulder.times", uniform=[0.0, 0.1])}
+    assert repr(so.ensembles.plan(many, vary, 2000)) == "Plan(furrer, leant 3, sample 2,000)"
+
+
 # ------------------------------------------------------------------------- mistakes
 
 

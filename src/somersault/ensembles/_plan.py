@@ -47,6 +47,10 @@ class Plan:
     seed: int
     sequence: str
 
+    def __repr__(self) -> str:
+        shape = ", ".join(f"{name} {length:,}" for name, length in self.dims.items())
+        return f"Plan({self.simulation.name}, {shape})"
+
     def __getstate__(self) -> dict[str, Any]:
         return {field.name: getattr(self, field.name) for field in fields(self)}
 

@@ -45,6 +45,9 @@ class Flights:
     steps: int
     varied: tuple[Name, ...] = ()
 
+    def __repr__(self) -> str:
+        return f"Flights({self.name}, {self.batch.duration:g} s)"
+
     def __getstate__(self) -> dict[str, Any]:
         state = {field.name: getattr(self, field.name) for field in fields(self)}
         return state | {"batch": replace(self.batch)}  # without what is compiled
