@@ -384,7 +384,7 @@ NOTES = {
     "(line 5)",
     "inertia 3 9 9 1 3 9 1 0 3": "inertias that are not symmetric, of which the lower half counts, "
     "as in biorbd: A",
-    "colour 1 2 3": "words that nobody knows, skipped as biorbd does: colour (line 5)",
+    "colour 1 2 3": "unknown words, skipped as biorbd skips them: colour (line 5)",
 }
 
 
@@ -460,9 +460,9 @@ def test_words_that_end_nothing_and_variables_without_their_sign(tmp_path: Path)
     model, said = noted(tmp_path, text.replace("mass 1", "mass $c kg") + "endsegment 8\n")
     assert model.mass == 3
     assert said == [
-        "words that nobody knows, skipped as biorbd does: b (line 1), kg (line 5)",
+        "unknown words, skipped as biorbd skips them: b (line 1), kg (line 5)",
         "words that end nothing: endsegment (line 7)",
-        "numbers between blocks, skipped: 8 (line 7)",
+        "numbers between blocks, skipped as biorbd skips them: 8 (line 7)",
     ]
 
 
@@ -512,7 +512,10 @@ MISTAKES = {
     "segment A\nendsegment\nversion 4": (1, "starts with the word version"),
     "version 4\nsegment A\ninertia 1 0 0 0 1 0 0 0 1\ninertia_xxyyzz 1 1 1": (4, "xxyyzz twice"),
     "version 4\nsegment A\nrotations x\nranges 1 2\nranges 1 2": (5, "ranges twice"),
-    "version 4\nsegment A\nrotations x y z": (3, "are one word, of which biorbd would take"),
+    "version 4\nsegment A\nrotations x y z": (
+        3,
+        "are written as one word, of which biorbd would read",
+    ),
     "version 4\nsegment A\ntranslations x y": (3, "write xy"),
     "version 4\nsegment A\nmass pi3": (3, "'pi3' is not a number"),
     "version 4\nsegment A\nmass 1,5": (3, "'1,5' is not a number"),
@@ -521,7 +524,10 @@ MISTAKES = {
         5,
         "the marker 'm' stands within segment 'A'",
     ),
-    "version 4\nsegment A\nmarker m\nparent A\nendmarker endsegment": (3, "the parent 'A' for it"),
+    "version 4\nsegment A\nmarker m\nparent A\nendmarker endsegment": (
+        3,
+        "would take to be 'A' because of it",
+    ),
 }
 
 

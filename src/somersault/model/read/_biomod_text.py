@@ -122,7 +122,9 @@ class File:
             if self._skipping:
                 return
             if known is _TOP:
-                self.strange.add("numbers between blocks, skipped", self.words.at(word[:40]))
+                self.strange.add(
+                    "numbers between blocks, skipped as biorbd skips them", self.words.at(word[:40])
+                )
                 return
             raise self.words.error(
                 f"the number {shown(word)} is one too many; remove it or add the word it belongs to"
@@ -133,9 +135,7 @@ class File:
                 f"{shown(word)} is not a word of the format here; did you mean {near[0]}?"
             )
         self._skipping = True
-        self.strange.add(
-            "words that nobody knows, skipped as biorbd does", self.words.at(word[:40])
-        )
+        self.strange.add("unknown words, skipped as biorbd skips them", self.words.at(word[:40]))
 
     # -------------------------------------------------------------------------- a segment
 
@@ -175,8 +175,8 @@ class File:
                 continue
             if last in ("translations", "rotations") and set(key) <= set("xyz"):
                 raise words.error(
-                    f"the axes of {last} are one word, of which biorbd would take the first "
-                    f"letters alone; write {getattr(segment, last)}{key}"
+                    f"the axes of {last} are written as one word, of which biorbd would read "
+                    f"only the first part; write {getattr(segment, last)}{key}"
                 )
             if key not in self._properties.readers:
                 self._pass_over(word, [*self._properties.readers, "endsegment"])
@@ -210,7 +210,7 @@ class File:
         if within is not None and parent and self._properties.known(parent) != segment.parent:
             raise self.words.error(
                 f"the {within.key} {shown(within.name)} stands within segment "
-                f"{shown(segment.name)}, which biorbd would hang on the parent {shown(parent)} for "
-                "it; put it below",
+                f"{shown(segment.name)}, whose parent biorbd would take to be {shown(parent)} "
+                "because of it; put it below the segment",
                 within.line,
             )

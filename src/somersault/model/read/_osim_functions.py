@@ -68,7 +68,7 @@ def function(words: Words, element: Element) -> Function:
     """The function that an element of a `.osim` file describes."""
     if element.tag not in _KINDS:
         raise words.error(
-            f"the function {element.tag} is none that is read; give one of {', '.join(_KINDS)}",
+            f"is a function that is not supported; use one of {', '.join(_KINDS)}",
             element,
         )
     return _KINDS[element.tag](words, element)
@@ -89,7 +89,7 @@ def _polynomial(words: Words, element: Element) -> Function:
 def _power_series(coefficients: list[float], words: Words, element: Element) -> Function:
     """Highest power first, as both kinds have them."""
     if element.tag == "LinearFunction" and len(coefficients) > 2:
-        raise words.error("moves by several coordinates at once, which is not read", element)
+        raise words.error("has more coefficients than its one coordinate; give two", element)
     if not any(coefficients[:-2]):
         slope, offset = [0.0, 0.0, *coefficients][-2:]
         return Line(slope, offset)

@@ -120,7 +120,7 @@ def moves(words: Words, joint: Element) -> tuple[Move, ...]:
         declared = _coordinates(words, joint)
         if len(declared) > len(sequence):
             raise words.error(
-                f"has {len(declared)} coordinates, and a {joint.tag} {len(sequence)}; remove the "
+                f"has {len(declared)} coordinates, and its kind has {len(sequence)}; remove the "
                 "others",
                 joint,
             )
@@ -149,7 +149,7 @@ def _coordinates(words: Words, joint: Element) -> dict[str, Coordinate]:
         if coordinate.name in found:
             raise words.error(f"has two coordinates named {coordinate.name!r}; rename one", joint)
         if coordinate.clamped and low > high:
-            raise words.error(f"has a range from {low:g} down to {high:g}; turn it round", element)
+            raise words.error(f"has a range from {low:g} down to {high:g}; swap its ends", element)
         found[coordinate.name] = coordinate
     return found
 
@@ -190,7 +190,7 @@ def _axis(
     if len(names) > 1:
         raise words.error(
             f"is moved by {len(names)} coordinates at once, {' and '.join(names[:2])}, which is "
-            "not read; give it one",
+            "not supported; give it one",
             element,
         )
     coordinate = declared.get(names[0], Coordinate(names[0])) if names else None

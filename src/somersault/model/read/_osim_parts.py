@@ -45,7 +45,7 @@ def parts_and_links(words: Words, model: Element) -> tuple[dict[str, Part], list
         if element.tag == "Body":
             if name.lower() != GROUND_NAME:
                 if name in parts or not name:
-                    raise words.error("has the name of another body, or none; rename it", element)
+                    raise words.error("has no name, or that of another body; rename it", element)
                 parts[name] = _part(words, element)
                 frames.add_body(path, name)
             links += [_within(words, joint, name) for joint in element.below("Joint")]
@@ -69,8 +69,8 @@ def _refuse_files(words: Words, model: Element) -> None:
     for element in model.children:
         if element.attributes.get("file") and element.tag in _SETS:
             raise words.error(
-                f"stands in another file, {element.attributes['file'][:80]!r}, which is not read; "
-                "put it here",
+                f"is in another file, {element.attributes['file'][:80]!r}, which is not opened; "
+                "put its contents here",
                 element,
             )
 
@@ -169,7 +169,7 @@ def _offset(words: Words, element: Element, position: str, angles: str) -> Array
 
 def _unknown(words: Words, joint: Element) -> Exception:
     return words.error(
-        f"is of a kind that is not read; use one of {', '.join(KINDS)}",
+        f"is of a kind that is not supported; use one of {', '.join(KINDS)}",
         joint,
     )
 
@@ -225,7 +225,7 @@ class _Frames:
         named = self._named.get(name, [])
         if len(named) != 1:
             raise self._words.error(
-                f"speaks of the frame {path[:80]!r}, of which there are {len(named)}; correct its "
+                f"refers to the frame {path[:80]!r}, of which there are {len(named)}; correct its "
                 "path",
                 asks,
             )

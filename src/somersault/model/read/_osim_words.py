@@ -57,13 +57,17 @@ class Words:
             wanted = f"{count} finite numbers" if count > 1 else "a finite number"
             wanted = wanted if count else "finite numbers"
             shown = " ".join(found.text.split())[:60]
-            raise self.error(f"has the {name} {shown!r}, which is not {wanted}; correct it", found)
+            named = self._named(element)
+            raise self.error(f"of {named} is {shown!r}, which is not {wanted}; correct it", found)
         return values
 
     def error(self, what: str, element: Element | None) -> SomersaultError:
         """The error to raise for `what` of an element."""
         if element is None:  # a joint that no file has
             return SomersaultError(f"{self.file}: a joint {what}")
-        name = element.attributes.get("name")
-        shown = f"{element.tag} {name!r}" if name else element.tag
-        return SomersaultError(f"{self.file}, line {element.line}: {shown} {what}")
+        return SomersaultError(f"{self.file}, line {element.line}: {self._named(element)} {what}")
+
+    @staticmethod
+    def _named(element: Element) -> str:
+        name = element.attributes.get("name", "")[:60]
+        return f"{element.tag} {name!r}" if name else element.tag
