@@ -57,6 +57,14 @@ def test_the_frames_of_a_film_are_the_frames(flight, tmp_path, ending):
     assert np.abs(frames[0].astype(float) - frames[3]).mean() > 4
 
 
+def test_any_name_can_be_written(flight):
+    """Names of models come from files: long ones are cut, and signs that are none left out."""
+    plain = flight.frame(0.1, size=SIZE)
+    for name in ("x" * 1_000_000, "two\nlines\x00", "", "</script>", "体操 🤸"):
+        seen = frame(flight, 0.1, size=SIZE, labels=[name])
+        assert np.array_equal(seen[80:], plain[80:])
+
+
 def test_films_repeat(flight, tmp_path):
     for name in ("a.mp4", "b.mp4"):
         flight.film(tmp_path / name, fps=10, size=SIZE)
@@ -190,6 +198,7 @@ def test_without_pyav_one_is_told_what_to_install(flight, tmp_path, monkeypatch)
         ({"speed": 0.0}, "more than 0"),
         ({"speed": float("inf")}, "speed must be"),
         ({"speed": 1e-7}, "frames"),
+        ({"speed": 0.01}, "too many for a .gif"),
         ({"camera": (0, 100)}, "elevation"),
         ({"camera": 3}, "camera must be 2 numbers"),
         ({"vectors": ("torque",)}, "there is no vector 'torque'"),

@@ -27,6 +27,7 @@ class Encoder(ABC):
     """
 
     ending: ClassVar[str]
+    most_pixels: ClassVar[float] = np.inf  # in all frames together
 
     @abstractmethod
     def __init__(self, size: tuple[int, int], fps: int) -> None: ...
@@ -113,6 +114,7 @@ class Gif(Encoder):
     """GIF by Pillow, which matplotlib brings; its delays are hundredths of a second."""
 
     ending = ".gif"
+    most_pixels = 5e8  # they are all in memory at once, a byte each
 
     def __init__(self, size: tuple[int, int], fps: int) -> None:
         self._fps = fps

@@ -70,9 +70,15 @@ def film(
     if speed <= 0:
         raise SomersaultError(f"speed is {speed:g}; give more than 0, like 0.25 for slow motion")
     moments = _moments(shown_, fps, speed)
+    kind = ENCODERS[file.suffix.lower()]
+    if len(moments) * chosen.size[0] * chosen.size[1] > kind.most_pixels:
+        raise SomersaultError(
+            f"{len(moments)} frames of {chosen.size[0]} x {chosen.size[1]} are too many for a "
+            f"{kind.ending}; give a smaller size or fewer fps, or write an .mp4"
+        )
     note = "" if speed == 1 else f"   (speed × {speed:.3g})"
     scene = Scene(shown_, moments, chosen, note)
-    encoder = ENCODERS[file.suffix.lower()](chosen.size, fps)
+    encoder = kind(chosen.size, fps)
     for k in range(len(moments)):
         encoder.add(scene.frame(k))
     write(file, encoder.finished())

@@ -11,6 +11,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault.view._stage import rgb
 
+_MOST_LETTERS = 160
 INK, FAINT = "#1f2a36", "#5b6570"
 
 
@@ -19,6 +20,7 @@ def write_on(
 ) -> None:
     """Put a line of words on a picture (height, width, 4), its upper left corner at a pixel; what
     does not fit is cut off."""
+    words = "".join(c for c in words[:_MOST_LETTERS] if c.isprintable()) or " "
     mask = _mask(words, max(8, round(size)))
     x, y = (max(0, round(value)) for value in at)
     room = picture[y : y + mask.shape[0], x : x + mask.shape[1], :3]

@@ -13,7 +13,7 @@ from somersault.model.shapes import Color, Mesh, Shape, loft
 from somersault.view._canvas import Surface
 
 TRUNK, LIMBS = (0.36, 0.53, 0.74), (0.90, 0.69, 0.46)  # of what has no colour of its own
-_MOST_FACES = 150_000  # of a whole model
+_MOST_FACES = 60_000  # of a whole model
 _TRUNK = 0.2  # of the mass: a body that has more is of the trunk
 _MOST_READ = 20_000_000
 
