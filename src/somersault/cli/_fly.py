@@ -16,7 +16,7 @@ HELP = "One free flight, from a takeoff described in a TOML file."
 EXAMPLES = """examples:
   somersault fly examples/layout.toml
   somersault fly examples/layout.toml --out layout.nc --json
-  somersault fly examples/layout.toml --video layout.mp4
+  somersault fly examples/layout.toml --video layout.mp4 --page layout.html
 
 A SPEC:
   model = "furrer"              # a shipped name or a file; axes = [1, 2, 3] if its x is lateral
@@ -41,6 +41,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--video", type=Path, metavar="FILE", help="write a film of it, .mp4, .webm or .gif"
     )
+    parser.add_argument(
+        "--page", type=Path, metavar="FILE", help="write a page that plays it in a browser, .html"
+    )
     parser.add_argument("--json", action="store_true", help="print JSON for programs")
 
 
@@ -56,6 +59,10 @@ def run(chosen: argparse.Namespace) -> None:
         from somersault.view import check_film
 
         check_film(chosen.video)
+    if chosen.page is not None:
+        from somersault.view import check_page
+
+        check_page(chosen.page)
     maneuver = Maneuver.read(chosen.spec)
     with warnings.catch_warnings(record=True):  # it is the error below
         flight = maneuver.fly()
@@ -67,6 +74,8 @@ def run(chosen: argparse.Namespace) -> None:
         flight.save(chosen.out)
     if chosen.video is not None:
         flight.film(chosen.video, charts=True, vectors=("momentum",))
+    if chosen.page is not None:
+        flight.page(chosen.page)
     if chosen.json:
         print(json.dumps(_record(flight)))
     else:

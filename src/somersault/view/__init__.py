@@ -9,6 +9,7 @@ from somersault.view._film import check_film, film
 from somersault.view._filmed import Filmed
 from somersault.view._histories import time_histories
 from somersault.view._look import Look
+from somersault.view._page import check_page, page
 from somersault.view._plots import root_loci, stability_chart
 from somersault.view._stills import frame, picture, stroboscopic_picture
 
@@ -17,10 +18,12 @@ __all__ = [
     "Look",
     "camera",
     "check_film",
+    "check_page",
     "contact_sheet",
     "draw_pose",
     "film",
     "frame",
+    "page",
     "picture",
     "root_loci",
     "stability_chart",

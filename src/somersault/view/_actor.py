@@ -36,7 +36,7 @@ class Actor:
         return figure_of(self.history.model)
 
     @cached_property
-    def _stage(self) -> Array:
+    def stage(self) -> Array:
         """Rows front, left and up in inertial axes."""
         axes = self.history.model.axes if self.history.model.free else AXES
         return np.array(in_sequence(list(np.eye(3)), axes))
@@ -49,12 +49,12 @@ class Actor:
     def _turns(self) -> Array:
         """From the base's axes to the stage's, (T, 3, 3)."""
         quaternions = turned_at(self.history.times, self.history.base_quaternion, self.moments)
-        return self._stage @ matrix_from_quaternion(quaternions)
+        return self.stage @ matrix_from_quaternion(quaternions)
 
     @cached_property
     def _base(self) -> Array:
         places = values_at(self.history.times, self.history.base_position, self.moments)
-        return places @ self._stage.T
+        return places @ self.stage.T
 
     @cached_property
     def frames(self) -> tuple[Array, Array]:
@@ -80,7 +80,7 @@ class Actor:
         turn = matrix_from_quaternion(history.base_quaternion)
         return {
             name: values_at(history.times, np.einsum("tij,tj->ti", turn, own), self.moments)
-            @ self._stage.T
+            @ self.stage.T
             for name, own in (("momentum", momenta), ("spin", omega))
         }
 

@@ -1,4 +1,4 @@
-"""What can be looked at: films and pictures as methods of a history."""
+"""What can be looked at: films, pictures and pages as methods of a history."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from somersault._core.array import Array
 from somersault.view._film import film
 from somersault.view._look import several
+from somersault.view._page import page
 from somersault.view._stills import frame, picture, stroboscopic_picture
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Filmed:
-    """Films and pictures of a history, as methods of its own."""
+    """Films, pictures and pages of a history, as methods of its own."""
 
     def film(
         self,
@@ -64,6 +65,18 @@ class Filmed:
         ndarray of uint8, (height, width, 3)
         """
         return frame(self, time, **look)  # type: ignore[arg-type]
+
+    def page(self, path: str | os.PathLike[str], title: str | None = None) -> None:
+        """Write a page that plays it in a browser, without a network: `view.page` of it.
+
+        Parameters
+        ----------
+        path : path-like
+            A .html file.
+        title : str, optional
+            The heading; the model's name, if it is not given.
+        """
+        page(self, path, title=title)  # type: ignore[arg-type]
 
     def picture(
         self,

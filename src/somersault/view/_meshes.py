@@ -47,7 +47,7 @@ def figure_of(model: Model, most: int = _MOST_FACES) -> Figure:
     share = most / max(sum(sizes), most)
     bodies, points, normals, faces, paints = [], [], [], [], []
     start = 0
-    heavy = [k == 0 or body.mass > _TRUNK * model.mass for k, body in enumerate(model.bodies)]
+    trunk = of_trunk(model)
     for (body, shape), size in zip(shapes, sizes, strict=True):
         if share < 1 and isinstance(shape, Mesh):
             shape = coarser(shape, max(200, int(share * size)))
@@ -57,7 +57,7 @@ def figure_of(model: Model, most: int = _MOST_FACES) -> Figure:
         normals.append(surface.normals)
         faces.append(surface.faces + start)
         closed = float(_closed(shape))
-        paint = (*_colour(shape.color, heavy[body]), closed)
+        paint = (*colour_of(shape.color, trunk[body]), closed)
         paints.append(np.tile(paint, (len(surface.faces), 1)))
         start += len(surface.vertices)
     if not start:
@@ -68,7 +68,13 @@ def figure_of(model: Model, most: int = _MOST_FACES) -> Figure:
     )  # fmt: skip
 
 
-def _colour(own: Color | None, trunk: bool) -> tuple[float, float, float]:
+def of_trunk(model: Model) -> list[bool]:
+    """Which bodies have the trunk's colour: the base, and those that are heavy."""
+    return [k == 0 or body.mass > _TRUNK * model.mass for k, body in enumerate(model.bodies)]
+
+
+def colour_of(own: Color | None, trunk: bool) -> tuple[float, float, float]:
+    """Of a shape: its own, or the one that parts of its kind have."""
     if own is not None:
         return own[0], own[1], own[2]
     return TRUNK if trunk else LIMBS
@@ -92,6 +98,8 @@ def _closed(shape: Shape) -> bool:
 
 def coarser(mesh: Mesh, most: int) -> Mesh:
     """A mesh of at most so many triangles: corners that stand in one cell of a lattice are one."""
+    if len(mesh.faces) <= most:
+        return mesh
     low = mesh.vertices.min(0)
     size = float(np.ptp(mesh.vertices, axis=0).max()) or 1.0
     cells = int(np.sqrt(most)) + 4

@@ -1,0 +1,63 @@
+"""What a page is told of a model's looks."""
+
+from __future__ import annotations
+
+import base64
+from typing import Any
+
+import numpy as np
+
+from somersault._core.array import Array
+from somersault.model import Model, model_shapes
+from somersault.model.shapes import Mesh, Shape
+from somersault.view._meshes import coarser, colour_of, of_trunk
+
+_KINDS = {"f4": "<f4", "u2": "<u2", "u4": "<u4"}
+_LEAST = 60  # triangles that each mesh may keep
+
+
+def block(values: Array, kind: str = "f4") -> dict[str, str]:
+    """Numbers as the page reads them: little-endian, in base64."""
+    data = np.ascontiguousarray(values, _KINDS[kind]).tobytes()
+    return {"type": kind, "base64": base64.b64encode(data).decode("ascii")}
+
+
+def model_record(model: Model, most: int) -> dict[str, Any]:
+    """A model by its bodies' names and shapes, with about `most` triangles in its meshes."""
+    rows = model_shapes(model)
+    total = sum(len(shape.faces) for row in rows for shape in row if isinstance(shape, Mesh))
+    share = min(1.0, most / total) if total else 1.0
+    return {
+        "name": model.name,
+        "bodies": [
+            {"name": body.name, "shapes": [_shape(shape, share, trunk) for shape in row]}
+            for body, row, trunk in zip(model.bodies, rows, of_trunk(model), strict=True)
+        ],
+    }
+
+
+def _shape(shape: Shape, share: float, trunk: bool) -> dict[str, Any]:
+    opacity = 1.0 if shape.color is None else shape.color[3]
+    color = [*colour_of(shape.color, trunk), opacity]
+    if isinstance(shape, Mesh):
+        few = coarser(shape, max(_LEAST, int(share * len(shape.faces))))
+        return {**_mesh(few), "color": color}
+    return {
+        "kind": shape.kind,
+        "sizes": list(shape.sizes),
+        "position": list(shape.position),
+        "rotation": [list(row) for row in shape.rotation],
+        "color": color,
+    }
+
+
+def _mesh(mesh: Mesh) -> dict[str, Any]:
+    """By its triangles, in which sharp edges have corners of their own."""
+    surface = mesh.triangles
+    return {
+        "kind": mesh.kind,
+        "vertices": block(surface.vertices),
+        "faces": block(surface.faces, "u2" if len(surface.vertices) < 2**16 else "u4"),
+        "position": [0.0, 0.0, 0.0],
+        "rotation": np.eye(3).tolist(),
+    }
