@@ -25,14 +25,14 @@ def main(model: str = "furrer", joint: str = "shoulder") -> None:
     locus = so.stability.root_locus(
         model,
         (f"stiffness.{joint}", np.linspace(-2.0, 4.0, 241)),
-        fixed={f"pose.{joint}": 1.3},
+        pose={joint: 1.3},
         subsystem="tilt",
     )
     root_loci(locus).savefig("roots.png", dpi=160)
 
     for angle in (0.4, 1.4, 2.6):
         ranges = so.stability.stable_ranges(
-            model, (f"stiffness.{joint}", -2.0, 4.0), fixed={f"pose.{joint}": angle}
+            model, (f"stiffness.{joint}", -2.0, 4.0), pose={joint: angle}
         )
         shown = ", ".join(f"{low:.3f} to {high:.3f}" for low, high in ranges) or "none"
         print(f"{joint} at {angle} rad: stable for K = {shown}")

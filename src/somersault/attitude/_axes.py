@@ -123,6 +123,5 @@ def from_sequence(vector: Sequence[Any], axes: Axes) -> list[Any]:
     [1.0, 2.0, 3.0]
     """
     a, b, c = axes
-    found: list[Any] = [None] * 3
-    found[b - 1], found[a - 1], found[c - 1] = vector[0], side(axes) * vector[1], vector[2]
-    return found
+    along = {b: vector[0], a: side(axes) * vector[1], c: vector[2]}
+    return [along[axis] for axis in (1, 2, 3)]

@@ -132,14 +132,14 @@ def excess_energy(inertias: Array, omega: Array) -> tuple[Fraction, Fraction]:
 
 def checked_omega(omega: ArrayLike) -> Array:
     """An angular velocity (3,), rad/s, that is finite and not zero; else `SomersaultError`."""
-    found = np.asarray(omega, float)
-    if found.shape != (3,) or not np.all(np.isfinite(found)):
+    rates = np.asarray(omega, float)
+    if rates.shape != (3,) or not np.all(np.isfinite(rates)):
         raise SomersaultError(
             f"The angular velocity must be three finite numbers in rad/s, not {omega!r}."
         )
-    if not found.any():
+    if not rates.any():
         raise SomersaultError(
             "A body without angular momentum does not turn; give an angular velocity that is not "
             "zero."
         )
-    return found
+    return rates

@@ -275,13 +275,13 @@ class RigidMotion:
         h = self.momentum
         if math.hypot(h[0], h[2]) > _ALONG * abs(h[1]):
             return self._counted(times)
-        found = self.momentum_angles(times)
+        angles = self.momentum_angles(times)
         if h[1] > 0:
-            return found
-        found = found * [-1.0, -1.0, 1.0] + [0.0, 0.0, np.pi]
+            return angles
+        angles = angles * [-1.0, -1.0, 1.0] + [0.0, 0.0, np.pi]
         start = self.momentum_angles(0.0)[2] + np.pi
-        found[..., 2] -= 2 * np.pi * np.round(start / (2 * np.pi))
-        return found
+        angles[..., 2] -= 2 * np.pi * np.round(start / (2 * np.pi))
+        return angles
 
     def momentum_angles(self, t: ArrayLike) -> Array:
         """Somersault, tilt and twist about the angular momentum, in closed form (A.19 to A.33).
@@ -315,10 +315,10 @@ class RigidMotion:
         if self._precession is None:
             rate = np.linalg.norm(self.omega0)
             return first + np.stack([rate * times, 0 * times, 0 * times], -1)
-        found = self._precession.angles(times)
+        angles = self._precession.angles(times)
         begin = self._precession.angles(np.zeros(()))
         turns = np.round((begin[2] - first[2]) / (2 * np.pi))
-        return found + np.array([first[0] - begin[0], 0.0, -2 * np.pi * turns])
+        return angles + np.array([first[0] - begin[0], 0.0, -2 * np.pi * turns])
 
     def twists_per_somersault_quadrature(self) -> float:
         """`twists_per_somersault` by numerical integration of A.22, with no elliptic function.
@@ -370,7 +370,7 @@ class RigidMotion:
                 f"Turns are counted up to {_MOST_SAMPLES * _STEP / fastest:.0f} s for this body; "
                 "later, use quaternion(t), or lay the momentum along inertial axis 2."
             )
-        found = np.empty((flat.size, 3))
+        counted = np.empty((flat.size, 3))
         for side in (flat >= 0, flat < 0):
             if not side.any():
                 continue
@@ -379,8 +379,8 @@ class RigidMotion:
             path = np.unique(np.concatenate([np.abs(fine), np.abs(flat[side])]))
             signed = path if last >= 0 else -path
             angles = attitude.unwrapped_angles(self.quaternion(signed))
-            found[side] = angles[np.searchsorted(path, np.abs(flat[side]))]
-        return found.reshape(*times.shape, 3)
+            counted[side] = angles[np.searchsorted(path, np.abs(flat[side]))]
+        return counted.reshape(*times.shape, 3)
 
 
 def _shortest_from_2(direction: Array) -> Array:

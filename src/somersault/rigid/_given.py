@@ -28,10 +28,10 @@ def checked_times(t: ArrayLike) -> Array:
 
 def unit_quaternion(given: ArrayLike) -> Array:
     """A quaternion (4,) of length one, or SomersaultError."""
-    found = np.asarray(given, float)
-    size = float(np.linalg.norm(found)) if found.shape == (4,) else math.nan
+    numbers = np.asarray(given, float)
+    size = float(np.linalg.norm(numbers)) if numbers.shape == (4,) else math.nan
     if not (math.isfinite(size) and size > 0):
         raise SomersaultError(
             f"The attitude must be a quaternion [w, x, y, z] of finite numbers, not {given!r}."
         )
-    return found / size
+    return numbers / size

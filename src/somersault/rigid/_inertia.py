@@ -17,23 +17,23 @@ def checked_inertias(inertias: ArrayLike) -> Array:
     Raises `SomersaultError` unless they are positive and finite and none exceeds the sum of
     the other two (which a flat body reaches).
     """
-    found = np.asarray(inertias, float)
-    if found.shape != (3,):
+    values = np.asarray(inertias, float)
+    if values.shape != (3,):
         raise SomersaultError(
-            f"A rigid body has three principal inertias, not an array of shape {found.shape}; "
+            f"A rigid body has three principal inertias, not an array of shape {values.shape}; "
             "give (I1, I2, I3)."
         )
-    if not np.all(np.isfinite(found) & (found > 0)):
+    if not np.all(np.isfinite(values) & (values > 0)):
         raise SomersaultError(
-            f"Principal inertias must be positive and finite, not {_listed(found)}; "
+            f"Principal inertias must be positive and finite, not {_listed(values)}; "
             "give them in kg m²."
         )
-    if 2 * found.max() > found.sum() * (1 + _FLAT):
+    if 2 * values.max() > values.sum() * (1 + _FLAT):
         raise SomersaultError(
-            f"No body has principal inertias {_listed(found)}, because none may exceed the sum "
+            f"No body has principal inertias {_listed(values)}, because none may exceed the sum "
             "of the other two; check their units and order."
         )
-    return found
+    return values
 
 
 def inertia_ratios(I1: ArrayLike, I2: ArrayLike, I3: ArrayLike) -> tuple[Array, Array]:

@@ -14,7 +14,7 @@ import numpy as np
 from somersault._core.array import Array
 
 _CONVERGED = 1e-8  # of the arithmetic–geometric mean; one more step squares it
-_HYPERBOLIC = 1e-9  # k′ (or cn + dn) whose square is lost beside 1
+_HYPERBOLIC = 1e-9  # k′ (or cn + dn) whose square is lost when added to 1
 _SMALL = 1e-100  # below it sn u = u and squares of cotangents would overflow
 
 

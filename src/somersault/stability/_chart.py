@@ -122,8 +122,8 @@ def chart(
     Examples
     --------
     >>> from somersault.stability import chart
-    >>> found = chart("furrer", ("pose.shoulder", [1.3]), ("stiffness.shoulder", [0.5, 1.2]))
-    >>> found.stable.values
+    >>> island = chart("furrer", ("pose.shoulder", [1.3]), ("stiffness.shoulder", [0.5, 1.2]))
+    >>> island.stable.values
     array([[False],
            [ True]])
     """
@@ -209,11 +209,11 @@ def root_locus(
     if values.ndim != 1 or not values.size:
         raise SomersaultError("a root locus needs one row of values")
     _require_open(cases, name)
-    found = [
+    by_part = [
         np.broadcast_to(r, (len(values), r.shape[-1]))
         for r in (part.roots() for part in cases.parts({name: values}))
     ]
-    roots = np.concatenate(found, -1)
+    roots = np.concatenate(by_part, -1)
     dims = (name, "root")
     attrs = {"units": "spin rate"}
     return xr.Dataset(
@@ -317,9 +317,9 @@ def stable_ranges_by_case(
     Examples
     --------
     >>> from somersault.stability import stable_ranges_by_case
-    >>> found = stable_ranges_by_case("furrer", ("stiffness.shoulder", -2, 4),
-    ...                               pose={"shoulder": [0.1, 1.3]})
-    >>> [len(ranges) for ranges in found]
+    >>> by_pose = stable_ranges_by_case("furrer", ("stiffness.shoulder", -2, 4),
+    ...                                 pose={"shoulder": [0.1, 1.3]})
+    >>> [len(ranges) for ranges in by_pose]
     [0, 1]
     """
     cases = grid(model, fixed, pose, stiffness, damping, axis, lock, subsystem)
@@ -390,9 +390,9 @@ def _ranges(
         same = stable(middle, case) == starts_inside
         left, right = np.where(same, middle, left), np.where(same, right, middle)
     edges = (left + right) / 2
-    found = []
+    by_case = []
     for k in range(count):
         first, last = ([low] if inside[k, 0] else []), ([high] if inside[k, -1] else [])
         ends = [*first, *edges[case == k].tolist(), *last]
-        found.append(list(zip(ends[::2], ends[1::2], strict=True)))
-    return found
+        by_case.append(list(zip(ends[::2], ends[1::2], strict=True)))
+    return by_case

@@ -87,16 +87,16 @@ def motions(model: Model, locked: frozenset[int]) -> dict[int, Array]:
     bound = set(locked)
     for joint in model.joints:
         if joint.follows is not None:
-            (own,) = _places(model, joint.name)
+            (follower,) = _places(model, joint.name)
             (leader,) = _places(model, joint.follows.leader)
-            columns[own, leader] = joint.follows.factor
-            bound |= {own} if own not in locked else {own, leader}
+            columns[follower, leader] = joint.follows.factor
+            bound |= {follower, leader} if follower in locked else {follower}
     return {k: columns[:, k] for k in range(len(columns)) if k not in bound}
 
 
 def _places(model: Model, joint: str) -> range:
-    own = model.speed_slice(joint)
-    return range(own.start, own.stop)
+    at = model.speed_slice(joint)
+    return range(at.start, at.stop)
 
 
 def locked_speeds(model: Model, lock: str | Iterable[str]) -> frozenset[int]:

@@ -190,10 +190,10 @@ def _stacked(values: Sequence[Array]) -> Array:
 def _one_axis(model: Model, inertias: Array, axis: Axis | str | int) -> int:
     if str(axis) in ("1", "2", "3"):
         return int(axis) - 1
-    found = {axis_index(one, axis) for one in inertias.reshape(-1, 3)}
-    if len(found) > 1:
+    indices = {axis_index(one, axis) for one in inertias.reshape(-1, 3)}
+    if len(indices) > 1:
         raise SomersaultError(
             f"the {axis} axis of {model.name} is not the same one everywhere in this chart; give "
             "axis 1, 2 or 3"
         )
-    return found.pop()
+    return indices.pop()

@@ -83,13 +83,13 @@ def deviated(model: Model, q: Vec, deviation: Vec) -> Vec:
     """The pose q with each joint moved by a small `deviation` along its speeds."""
     pose: Vec = []
     for joint in model.joints:
-        own = q[model.coordinate_slice(joint.name)]
+        at = q[model.coordinate_slice(joint.name)]
         small = deviation[model.speed_slice(joint.name)]
         if joint.kind == "ball":
-            w, v = own[0], own[1:]
+            w, v = at[0], at[1:]
             half = scale(0.5, small)
             pose += [w - sum(a * b for a, b in zip(v, half, strict=True))]
             pose += vadd(v, scale(w, half), cross(v, half))
         else:
-            pose += [own[0] + small[0]]
+            pose += [at[0] + small[0]]
     return pose

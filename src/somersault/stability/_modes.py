@@ -54,9 +54,9 @@ def modes(model: Model, system: GyricSystem) -> tuple[Mode, ...]:
 
     Subsystem by subsystem, so that rounding cannot mix what does not act on each other.
     """
-    found = [mode for group in system.groups for mode in _of_part(model, system, group)]
-    found.sort(key=lambda mode: (round(mode.root.imag, 9), round(mode.root.real, 9)))
-    return tuple(found)
+    every = [mode for group in system.groups for mode in _of_part(model, system, group)]
+    every.sort(key=lambda mode: (round(mode.root.imag, 9), round(mode.root.real, 9)))
+    return tuple(every)
 
 
 def _of_part(model: Model, system: GyricSystem, keep: list[int]) -> list[Mode]:
@@ -72,25 +72,25 @@ def _of_part(model: Model, system: GyricSystem, keep: list[int]) -> list[Mode]:
     shapes = x[np.argsort(scaled.order)] / part.sizes[:, None]
     slow = slow_rates(x, rates, Energy(k, m, d)) if conservative(scaled) else np.zeros(2 * n)
     real = np.where(unsure, slow, values.real)
-    found: list[Mode] = []
+    of_part: list[Mode] = []
     about = part.attitude.about
     # Turning a little faster or slower is a double zero, which rounding splits into a tiny pair:
     # the two nearest zero.
     skip = set() if about is None else set(np.argsort(np.abs(values))[:2].tolist())
     if about is not None:
-        found.append(Mode(f"{part.names[about]} drift", 0j, np.eye(n, dtype=complex)[about], 0))
+        of_part.append(Mode(f"{part.names[about]} drift", 0j, np.eye(n, dtype=complex)[about], 0))
     for i in range(2 * n):
         if i in skip or values[i].imag < -_SMALL * 1e-3:
             continue
         root = complex(real[i], values[i].imag)
         shape = shapes[:, i] / shapes[np.argmax(np.abs(shapes[:, i])), i]
         if _stroboscopic(part, shape, root):
-            found.append(Mode("stroboscopic", root, shape, 0))
+            of_part.append(Mode("stroboscopic", root, shape, 0))
             continue
         name, energy = _name(model, part, shape, root), _energy(part, shape, root)
-        found.append(Mode(name, root, shape, energy))
+        of_part.append(Mode(name, root, shape, energy))
     whole = np.zeros(len(system.names), complex)
-    return [replace(mode, shape=_embedded(mode.shape, keep, whole)) for mode in found]
+    return [replace(mode, shape=_embedded(mode.shape, keep, whole)) for mode in of_part]
 
 
 def _embedded(shape: Array, keep: list[int], whole: Array) -> Array:

@@ -25,14 +25,14 @@ def strengths(
     """
     result = default
     for name, value in spread(model, by_joint, mirrored=False).items():
-        own = model.speed_slice(name)
+        at = model.speed_slice(name)
         numbers = _checked(f"{what} of {name}", what, value)
-        here = numbers[..., None] * outboard[..., own]
+        here = numbers[..., None] * outboard[..., at]
         if result.ndim > 1 or here.ndim > 1:
             lead = np.broadcast_shapes(result.shape[:-1], here.shape[:-1])
             result = np.broadcast_to(result, (*lead, len(model.speeds)))
         result = result.copy()
-        result[..., own] = here
+        result[..., at] = here
     return result
 
 

@@ -236,8 +236,8 @@ class LinearSpin:
         is constant in its body's axes and so has no energy; K is then not symmetric, and the
         signature is that of its symmetric part.
         """
-        found = [_signature(part) for part in self.system.undamped().parts()]
-        return max(found, key=_SIGNATURES.index)
+        by_part = [_signature(part) for part in self.system.undamped().parts()]
+        return max(by_part, key=_SIGNATURES.index)
 
     @cached_property
     def modes(self) -> tuple[Mode, ...]:
