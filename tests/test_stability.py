@@ -13,7 +13,14 @@ from trees import random_rotation, random_tree
 
 from somersault import SomersaultError
 from somersault.model import Body, Joint, Model, as_matrix, as_vector, load
-from somersault.stability import Spin, chart, root_locus, spin, stable_ranges
+from somersault.stability import (
+    Spin,
+    chart,
+    growth_rates,
+    root_locus,
+    spin,
+    stable_ranges,
+)
 
 RANKS = ("minor", "intermediate", "major")
 TURNS = ("tilt", "somersault", "twist")
@@ -271,6 +278,31 @@ def test_a_chart_is_what_single_spins_say() -> None:
                 assert bool(at.definite) == (system.energy_signature == "definite")
 
 
+def test_one_spelling_for_one_spring_wherever_a_joint_is_named() -> None:
+    """Pairs and sides, in full names and by joint: the same rates, charts, loci and ranges."""
+    sides = {"left_shoulder": 1.3, "right_shoulder": -1.3}
+    springs, dampers = dict.fromkeys(sides, 1.2), dict.fromkeys(sides, 0.1)
+    spellings = [
+        {"pose": {"shoulder": 1.3}, "stiffness": {"shoulder": 1.2}, "damping": {"shoulder": 0.1}},
+        {"pose": sides, "stiffness": springs, "damping": dampers},
+    ]
+    one, other = (growth_rates("furrer", **how) for how in spellings)
+    named = {"pose.shoulder": 1.3, "stiffness.shoulder": 1.2, "damping.shoulder": 0.1}
+    single = spin("furrer", pose={"shoulder": 1.3}).linear({"shoulder": 1.2}, {"shoulder": 0.1})
+    for rate in (other, growth_rates("furrer", named), single.growth_rate):
+        assert float(rate) == pytest.approx(float(one), abs=1e-12)
+    masses, along = ("bodies.body.mass", [58.3, 60.0]), ("bodies.body.com.3", [0.0, 0.1])
+    charts = [chart("furrer", masses, along, **how) for how in spellings]
+    charts.append(chart("furrer", masses, along, fixed=named))
+    loci = [root_locus("furrer", masses, **how) for how in spellings]
+    loci.append(root_locus("furrer", masses, fixed=named))
+    for k in (1, 2):
+        np.testing.assert_allclose(charts[0].growth_rate, charts[k].growth_rate, atol=1e-9)
+        np.testing.assert_allclose(loci[0].growth, loci[k].growth, atol=1e-7)
+    locked = [growth_rates("furrer", lock=how) for how in ("all", "shoulder", ["shoulder"], sides)]
+    assert np.ptp(locked) < 1e-12
+
+
 @pytest.mark.parametrize("axis", RANKS)
 def test_a_chart_knows_that_a_rigid_maximum_is_definite(axis: str) -> None:
     quantities = ("bodies.body.mass", [58.3]), ("pose.shoulder", [1.0])
@@ -364,7 +396,7 @@ MISTAKES = {
     "'sideways'": lambda: spin("furrer", "sideways"),
     f"'elbow'; its joints are {SHOULDERS}": lambda: spin("furrer", 2, {"elbow": 1.0}),
     "left_shoulder=4 ": lambda: spin("furrer", 2, {"shoulder": 4.0}),
-    "pose left_shoulder": lambda: spin("furrer", 2, {"shoulder": np.nan}),
+    "pose shoulder is nan": lambda: spin("furrer", 2, {"shoulder": np.nan}),
     "one pose": lambda: spin("furrer", 2, {"shoulder": [1.0, 2.0]}),
     "'knee'": lambda: spin("furrer").linear({"knee": 1.0}),
     "'neck'": lambda: spin("furrer").linear(damping={"neck": 1.0}),
@@ -378,6 +410,16 @@ MISTAKES = {
     "bodies.elbow.mass": lambda: chart(
         "furrer", ("bodies.elbow.mass", [1.0]), ("pose.shoulder", [1.0])
     ),
+    "pose.shoulder (3,), stiffness.shoulder (4,)": lambda: growth_rates(
+        "furrer", {"pose.shoulder": np.zeros(3), "stiffness.shoulder": np.zeros(4)}
+    ),
+    "stiffness of shoulder is given twice": lambda: growth_rates(
+        "furrer", {"stiffness.shoulder": 1.0}, stiffness={"shoulder": 1.0}
+    ),
+    "left_shoulder is given twice": lambda: growth_rates(
+        "furrer", pose={"shoulder": 1.0, "left_shoulder": 1.0}
+    ),
+    "give one number": lambda: spin("furrer").linear({"shoulder": [1.0, 2.0]}),
     "no coordinate 'yaw'": lambda: root_locus("furrer", ("pose.shoulder", [1]), subsystem="yaw"),
     "stable ranges of pose.shoulder": lambda: stable_ranges(
         "furrer", ("pose.shoulder", 0.0, np.nan)

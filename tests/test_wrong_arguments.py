@@ -75,17 +75,20 @@ RIGHT: dict[Callable[..., Any], dict[str, Any]] = {
     rigid.separatrix: {"inertias": THREE, "points": 5},
     rigid.tilt_and_twist: {"cosines": THREE},
     attitude.as_axes: {"axes": (2, 1, 3)},
-    attitude.angle_rates: {"angles": [0.1, 0.2, 0.3], "omega": THREE},
-    attitude.body_rates: {"angles": [0.1, 0.2, 0.3], "rates": THREE},
+    attitude.angle_rates: {"axes": (2, 1, 3), "angles": [0.1, 0.2, 0.3], "omega": THREE},
+    attitude.body_rates: {"axes": (2, 1, 3), "angles": [0.1, 0.2, 0.3], "rates": THREE},
     attitude.angles_from_matrix: {"cosines": np.eye(3)},
-    attitude.angles_from_quaternion: {"quaternion": FOUR},
+    attitude.angles_from_quaternion: {"quaternion": FOUR, "axes": (2, 1, 3)},
     attitude.direction_cosines: {"somersault": 0.1, "tilt": 0.2, "twist": 0.3},
     attitude.matrix_from_quaternion: {"quaternion": FOUR},
     attitude.quaternion_conjugate: {"quaternion": FOUR},
-    attitude.quaternion_from_angles: {"somersault": 0.1, "tilt": 0.2, "twist": 0.3},
+    attitude.quaternion_from_angles: {
+        "somersault": 0.1, "tilt": 0.2, "twist": 0.3, "axes": (2, 1, 3)
+    },
     attitude.quaternion_from_matrix: {"matrix": np.eye(3)},
     attitude.quaternion_product: {"first": FOUR, "second": FOUR},
-    attitude.unwrapped_angles: {"quaternions": [FOUR, FOUR]},
+    attitude.unwrapped_angles: {"quaternions": [FOUR, FOUR], "axes": (2, 1, 3)},
+    attitude.side: {"axes": (2, 1, 3)},
 }  # fmt: skip
 ARGUMENTS = [
     pytest.param(call, name, id=f"{call.__qualname__}-{name}")

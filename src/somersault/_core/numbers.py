@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError
 
 MOST = 1e9  # in SI units: beyond it nothing flies, and sums of squares lose their sense
@@ -16,7 +17,7 @@ MOST = 1e9  # in SI units: beyond it nothing flies, and sums of squares lose the
 def number(what: str, value: Any) -> float:
     """A finite float; SomersaultError naming `what` for anything else."""
     if isinstance(value, bool) or not isinstance(value, int | float | np.number):
-        raise SomersaultError(f"{what} must be a number, and is {value!r}")
+        raise SomersaultError(f"{what} must be a number, and is {shown(value)}")
     try:
         result = float(value)
     except OverflowError:
@@ -34,7 +35,39 @@ def numbers(what: str, value: Any, size: int | None = None, most: float = MOST) 
         result = np.array(np.nan)
     wanted = "a row of" if size is None else str(size)
     if result.ndim != 1 or (size is not None and result.shape != (size,)):
-        raise SomersaultError(f"{what} must be {wanted} numbers, and is {value!r}")
+        raise SomersaultError(f"{what} must be {wanted} numbers, and is {shown(value)}")
     if not np.all(np.isfinite(result) & (np.abs(result) <= most)):
-        raise SomersaultError(f"{what} must be finite numbers below 1e9, and is {value!r}")
+        raise SomersaultError(f"{what} must be finite numbers below 1e9, and is {shown(value)}")
     return result
+
+
+def floats(what: str, value: Any, *ends: int) -> Array:
+    """Floats of any shape, (…, *ends); SomersaultError naming `what`. They need not be finite."""
+    try:
+        result = np.asarray(value, float)
+    except (TypeError, ValueError, OverflowError):
+        raise SomersaultError(f"{what} must be numbers, and is {shown(value)}") from None
+    if ends and result.shape[-len(ends) :] != ends:
+        shape = ", ".join(map(str, ends))
+        raise SomersaultError(f"{what} has shape {result.shape}, and must end in ({shape})")
+    return result
+
+
+def together(**values: Any) -> list[Array]:
+    """Floats that broadcast against each other; SomersaultError with names and shapes if they do
+    not."""
+    arrays = {name: floats(name, value) for name, value in values.items()}
+    require_together({name: array.shape for name, array in arrays.items()})
+    return [*np.broadcast_arrays(*arrays.values())]
+
+
+def require_together(shapes: dict[str, tuple[int, ...]]) -> tuple[int, ...]:
+    """The shape to which values broadcast; SomersaultError, naming them, if they do not."""
+    try:
+        return np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
+        raise SomersaultError(
+            f"these values do not go together: {listed}; give arrays of equal length, or of shapes "
+            "that broadcast"
+        ) from None

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
+from somersault._core.numbers import floats, require_together, together
 from somersault.attitude._axes import AXES, Axes, from_sequence, in_sequence, side
 from somersault.attitude._quaternions import quaternion_from_matrix, stacked
 
@@ -32,7 +33,7 @@ def direction_cosines(somersault: ArrayLike, tilt: ArrayLike, twist: ArrayLike) 
     >>> direction_cosines(0.0, 0.0, np.pi / 2).round(3).tolist()
     [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -0.0, 1.0]]
     """
-    s, t, w = np.broadcast_arrays(*(np.asarray(x, float) for x in (somersault, tilt, twist)))
+    s, t, w = together(somersault=somersault, tilt=tilt, twist=twist)
     (sf, cf), (st, ct), (sp, cp) = ((np.sin(x), np.cos(x)) for x in (s, t, w))
     return stacked(
         [
@@ -67,7 +68,7 @@ def quaternion_from_angles(
     >>> quaternion_from_angles(np.pi, 0.0, 0.0).round(3).tolist()
     [0.0, 0.0, 1.0, 0.0]
     """
-    halves = (0.5 * np.asarray(x, float) for x in (somersault, tilt, twist))
+    halves = (0.5 * x for x in together(somersault=somersault, tilt=tilt, twist=twist))
     (sf, cf), (st, ct), (sp, cp) = ((np.sin(x), np.cos(x)) for x in halves)
     sf = side(axes) * sf
     vector = [
@@ -102,7 +103,7 @@ def angles_from_quaternion(quaternion: ArrayLike, axes: Axes = AXES) -> Array:
     >>> angles_from_quaternion([1.0, 0.0, 1.0, 0.0]).round(4).tolist()
     [1.5708, 0.0, 0.0]
     """
-    half_sum, half_difference, tilt, _ = _halves(np.asarray(quaternion, float), axes)
+    half_sum, half_difference, tilt, _ = _halves(floats("quaternion", quaternion, 4), axes)
     return _signed(_from_halves(half_sum, half_difference, tilt), axes)
 
 
@@ -125,7 +126,7 @@ def angles_from_matrix(cosines: ArrayLike) -> Array:
     >>> angles_from_matrix(direction_cosines(0.3, 0.2, 0.1)).round(4).tolist()
     [0.3, 0.2, 0.1]
     """
-    c = np.asarray(cosines, float)
+    c = floats("cosines", cosines, 3, 3)
     return angles_from_quaternion(quaternion_from_matrix(np.swapaxes(c, -1, -2)))
 
 
@@ -152,8 +153,9 @@ def body_rates(angles: ArrayLike, rates: ArrayLike, axes: Axes = AXES) -> Array:
     >>> body_rates([0.0, 0.0, 0.0], [5.0, 0.1, 0.2]).tolist()
     [0.1, 5.0, 0.2]
     """
-    _, tilt, twist = np.ascontiguousarray(np.moveaxis(np.asarray(angles, float), -1, 0))
-    somersaulting, tilting, twisting = np.moveaxis(np.asarray(rates, float), -1, 0)
+    angles, rates = _vectors(angles=angles, rates=rates)
+    _, tilt, twist = np.ascontiguousarray(np.moveaxis(angles, -1, 0))
+    somersaulting, tilting, twisting = np.moveaxis(rates, -1, 0)
     somersaulting = side(axes) * somersaulting
     s, c = np.sin(twist), np.cos(twist)
     across = np.cos(tilt) * somersaulting
@@ -191,8 +193,9 @@ def angle_rates(angles: ArrayLike, omega: ArrayLike, axes: Axes = AXES) -> Array
     >>> angle_rates([0.0, 0.0, 0.0], [0.1, 5.0, 0.2]).tolist()
     [5.0, 0.1, 0.2]
     """
-    _, tilt, twist = np.moveaxis(np.asarray(angles, float), -1, 0)
-    w1, w2, w3 = in_sequence(list(np.moveaxis(np.asarray(omega, float), -1, 0)), axes)
+    angles, omega = _vectors(angles=angles, omega=omega)
+    _, tilt, twist = np.moveaxis(angles, -1, 0)
+    w1, w2, w3 = in_sequence(list(np.moveaxis(omega, -1, 0)), axes)
     somersaulting = (np.sin(twist) * w1 + np.cos(twist) * w2) / np.cos(tilt)
     tilting = np.cos(twist) * w1 - np.sin(twist) * w2
     rates = np.stack([somersaulting, tilting, w3 + np.sin(tilt) * somersaulting], -1)
@@ -237,7 +240,9 @@ def unwrapped_angles(quaternions: ArrayLike, axes: Axes = AXES) -> Array:
     >>> unwrapped_angles(path)[-1].round(6).tolist()
     [20.0, 0.1, 0.0]
     """
-    q = np.asarray(quaternions, float)
+    q = floats("quaternions", quaternions, 4)
+    if q.ndim < 2:
+        raise SomersaultError("A path is a row of attitudes, (time, 4), and this is one alone.")
     if not np.all(np.isfinite(q)):
         raise SomersaultError("Attitudes along a path must be finite; remove the others first.")
     half_sum, half_difference, tilt, free = _halves(q, axes)
@@ -255,6 +260,13 @@ def unwrapped_angles(quaternions: ArrayLike, axes: Axes = AXES) -> Array:
     turned = angles + np.pi
     turned[..., 1] = np.pi - angles[..., 1]
     return _signed(np.unwrap(np.where(second[..., None], turned, angles), axis=-2), axes)
+
+
+def _vectors(**values: ArrayLike) -> list[Array]:
+    """Vectors (…, 3) that broadcast against each other."""
+    arrays = {name: floats(name, value, 3) for name, value in values.items()}
+    require_together({name: array.shape for name, array in arrays.items()})
+    return [*arrays.values()]
 
 
 def _wrapped(angle: Array) -> Array:

@@ -14,6 +14,7 @@ from somersault._core.errors import SomersaultError
 Axes = tuple[int, int, int]
 
 AXES: Axes = (2, 1, 3)
+_ORDERS = tuple(permutations((1, 2, 3)))
 _RIGHT_HANDED = ((2, 1, 3), (1, 3, 2), (3, 2, 1))  # as tilt, somersault, twist: 1, 2, 3 in turn
 
 
@@ -40,9 +41,11 @@ def as_axes(axes: Any) -> Axes:
     >>> as_axes([2, 1, 3])
     (2, 1, 3)
     """
+    if isinstance(axes, tuple) and axes in _ORDERS and all(type(k) is int for k in axes):
+        return axes  # quickly, as they nearly always are
     given = tuple(axes) if isinstance(axes, Sequence | np.ndarray) else ()
     if not all(isinstance(k, int | np.integer) and not isinstance(k, bool) for k in given) or (
-        given not in permutations((1, 2, 3))
+        given not in _ORDERS
     ):
         raise SomersaultError(
             f"axes {shown(axes)} are not those of somersault, tilt and twist; give 1, 2 and 3 in "
@@ -72,7 +75,7 @@ def side(axes: Axes) -> int:
     >>> side((2, 1, 3)), side((1, 2, 3))
     (1, -1)
     """
-    return 1 if tuple(axes) in _RIGHT_HANDED else -1
+    return 1 if as_axes(axes) in _RIGHT_HANDED else -1
 
 
 def in_sequence(vector: Sequence[Any], axes: Axes) -> list[Any]:
@@ -98,7 +101,7 @@ def in_sequence(vector: Sequence[Any], axes: Axes) -> list[Any]:
     >>> in_sequence([1.0, 2.0, 3.0], (3, 1, 2))
     [1.0, -3.0, 2.0]
     """
-    a, b, c = axes
+    a, b, c = as_axes(axes)
     return [vector[b - 1], side(axes) * vector[a - 1], vector[c - 1]]
 
 
@@ -122,6 +125,6 @@ def from_sequence(vector: Sequence[Any], axes: Axes) -> list[Any]:
     >>> from_sequence([1.0, -3.0, 2.0], (3, 1, 2))
     [1.0, 2.0, 3.0]
     """
-    a, b, c = axes
+    a, b, c = as_axes(axes)
     along = {b: vector[0], a: side(axes) * vector[1], c: vector[2]}
     return [along[axis] for axis in (1, 2, 3)]

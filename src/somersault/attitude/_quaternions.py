@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
+from somersault._core.numbers import floats, require_together
 
 
 def matrix_from_quaternion(quaternion: ArrayLike) -> Array:
@@ -27,7 +28,7 @@ def matrix_from_quaternion(quaternion: ArrayLike) -> Array:
     >>> matrix_from_quaternion([0.0, 1.0, 0.0, 0.0]).tolist()
     [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]]
     """
-    w, x, y, z = np.moveaxis(np.asarray(quaternion, float), -1, 0)
+    w, x, y, z = np.moveaxis(floats("quaternion", quaternion, 4), -1, 0)
     return stacked(
         [
             [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
@@ -60,7 +61,7 @@ def quaternion_from_matrix(matrix: ArrayLike) -> Array:
     >>> quaternion_from_matrix(np.diag([1.0, -1.0, -1.0])).tolist()
     [0.0, 1.0, 0.0, 0.0]
     """
-    r = np.asarray(matrix, float)
+    r = floats("matrix", matrix, 3, 3)
     xx, yy, zz = r[..., 0, 0], r[..., 1, 1], r[..., 2, 2]
     wx, wy, wz = (r[..., j, i] - r[..., i, j] for i, j in ((1, 2), (2, 0), (0, 1)))
     yz, zx, xy = (r[..., j, i] + r[..., i, j] for i, j in ((1, 2), (2, 0), (0, 1)))
@@ -96,7 +97,8 @@ def quaternion_product(first: ArrayLike, second: ArrayLike) -> Array:
     >>> quaternion_product([0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]).tolist()
     [0.0, 0.0, 0.0, 1.0]
     """
-    p, q = np.asarray(first, float), np.asarray(second, float)
+    p, q = floats("first", first, 4), floats("second", second, 4)
+    require_together({"first": p.shape, "second": q.shape})
     real = p[..., 0] * q[..., 0] - np.sum(p[..., 1:] * q[..., 1:], -1)
     parts = p[..., :1] * q[..., 1:] + q[..., :1] * p[..., 1:] + np.cross(p[..., 1:], q[..., 1:])
     return np.concatenate([real[..., None], parts], -1)
@@ -120,7 +122,7 @@ def quaternion_conjugate(quaternion: ArrayLike) -> Array:
     >>> quaternion_conjugate([0.8, 0.6, 0.0, 0.0]).tolist()
     [0.8, -0.6, -0.0, -0.0]
     """
-    return np.asarray(quaternion, float) * [1.0, -1.0, -1.0, -1.0]
+    return floats("quaternion", quaternion, 4) * [1.0, -1.0, -1.0, -1.0]
 
 
 def stacked(rows: list[list[Array]]) -> Array:

@@ -11,7 +11,7 @@ from importlib.resources import as_file, files
 from pathlib import Path
 from typing import get_args
 
-from somersault._core.checks import one_of
+from somersault._core.checks import one_of, shown
 from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault.attitude import as_axes
 from somersault.model._base import Base, rebased
@@ -99,7 +99,7 @@ def _found(source: str | os.PathLike[str] | Model, base: Base | None) -> Model:
             raise TypeError
     except TypeError:
         raise SomersaultError(
-            f"{source!r} is no model; give a shipped model's name, a file, or a Model"
+            f"{shown(source)} is no model; give a shipped model's name, a file, or a Model"
         ) from None
     if name in shipped():
         return rebased(_shipped(name), base)

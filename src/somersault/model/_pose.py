@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
-from somersault._core.checks import by_name
+from somersault._core.checks import by_name, shown
 from somersault._core.errors import SomersaultError
+from somersault._core.numbers import floats, require_together
 from somersault.model._bodies import LIMIT_SLACK, Follow, Joint
 from somersault.model._mirror import sides
 from somersault.model._model import Model
@@ -40,11 +41,9 @@ def pose(model: Model, angles: Mapping[str, ArrayLike] | None) -> Array:
     >>> so.model.pose(so.load("furrer"), {"shoulder": 1.4}).tolist()
     [1.4, -1.4]
     """
-    given = {
-        name: _numbers(name, value)
-        for name, value in spread(model, by_name("pose", angles), mirrored=True).items()
-    }
-    shape = np.broadcast_shapes(*(value.shape for value in given.values()))
+    angles = {name: _numbers(name, value) for name, value in by_name("pose", angles).items()}
+    given = {n: np.asarray(v) for n, v in spread(model, angles, mirrored=True).items()}
+    shape = require_together({f"pose {name}": value.shape for name, value in given.items()})
     q = np.broadcast_to(model.home, (*shape, len(model.home))).copy()
     turns: dict[str, Array] = {}
     for name, value in given.items():
@@ -78,12 +77,9 @@ def _follow(model: Model, joint: Joint, follow: Follow, q: Array, named: bool) -
 
 
 def _numbers(name: str, value: ArrayLike) -> Array:
-    try:
-        numbers = np.asarray(value, float)
-    except (TypeError, ValueError):
-        numbers = np.array(np.nan)
+    numbers = floats(f"pose {name}", value)
     if not np.all(np.isfinite(numbers)):
-        raise SomersaultError(f"pose {name} is {value!r}; angles must be finite numbers")
+        raise SomersaultError(f"pose {name} is {shown(value)}; angles must be finite numbers")
     return numbers
 
 

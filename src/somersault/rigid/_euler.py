@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
+from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError
+from somersault._core.numbers import floats, number, require_together
 from somersault.rigid._inertia import checked_inertias
 
 Kind = Literal["minor", "major", "separatrix"]
@@ -36,7 +38,8 @@ def euler_rates(inertias: ArrayLike, omega: ArrayLike) -> Array:
     >>> euler_rates([3.0, 2.0, 1.0], [0.1, 5.0, 0.2]).round(3).tolist()
     [0.333, -0.02, 0.5]
     """
-    i, w = np.asarray(inertias, float), np.asarray(omega, float)
+    i, w = floats("inertias", inertias, 3), floats("omega", omega, 3)
+    require_together({"inertias": i.shape, "omega": w.shape})
     return np.cross(i * w, w) / i
 
 
@@ -69,9 +72,9 @@ def energy_bounds(inertias: ArrayLike, momentum: float) -> tuple[float, float, f
     (0.5, 0.8, 1.0)
     """
     checked = np.sort(checked_inertias(inertias))
-    if not (np.isfinite(momentum) and momentum > 0):
+    if not number("momentum", momentum) > 0:
         raise SomersaultError(
-            f"The angular momentum must be positive and finite, not {momentum}; give its magnitude."
+            f"The angular momentum must be positive, not {momentum}; give its magnitude."
         )
     minor, middle, major = (float(momentum**2 / (2 * i)) for i in checked)
     return major, middle, minor
@@ -112,7 +115,7 @@ def kind_of_motion(inertias: ArrayLike, omega: ArrayLike, tolerance: float = 0.0
     """
     checked, rates = checked_inertias(inertias), checked_omega(omega)
     excess, squared = excess_energy(checked, rates)
-    if abs(excess) <= Fraction(tolerance) * squared:
+    if abs(excess) <= Fraction(number("tolerance", tolerance)) * squared:
         return "separatrix"
     return "minor" if excess > 0 else "major"
 
@@ -132,10 +135,10 @@ def excess_energy(inertias: Array, omega: Array) -> tuple[Fraction, Fraction]:
 
 def checked_omega(omega: ArrayLike) -> Array:
     """An angular velocity (3,), rad/s, that is finite and not zero; else `SomersaultError`."""
-    rates = np.asarray(omega, float)
+    rates = floats("omega", omega)
     if rates.shape != (3,) or not np.all(np.isfinite(rates)):
         raise SomersaultError(
-            f"The angular velocity must be three finite numbers in rad/s, not {omega!r}."
+            f"The angular velocity must be three finite numbers in rad/s, not {shown(omega)}."
         )
     if not rates.any():
         raise SomersaultError(

@@ -11,7 +11,9 @@ from numpy.typing import ArrayLike
 
 from somersault import attitude
 from somersault._core.array import Array
+from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError
+from somersault._core.numbers import floats
 from somersault.rigid._euler import Kind, checked_omega, kind_of_motion
 from somersault.rigid._given import checked_times, fixed, unit_quaternion
 from somersault.rigid._inertia import checked_inertias
@@ -103,12 +105,12 @@ class RigidMotion:
         >>> RigidMotion.from_momentum([3.0, 2.0, 1.0], 4.0).omega0.tolist()
         [0.0, 2.0, 0.0]
         """
-        given = np.asarray(momentum, float)
+        given = floats("momentum", momentum)
         h = np.array([0.0, float(given), 0.0]) if given.ndim == 0 else given
         if h.shape != (3,) or not np.all(np.isfinite(h)):
             raise SomersaultError(
                 f"The angular momentum must be one or three finite numbers in kg m²/s, "
-                f"not {momentum!r}."
+                f"not {shown(momentum)}."
             )
         turn = attitude.matrix_from_quaternion(unit_quaternion(attitude0))
         checked = checked_inertias(inertias)

@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
+from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError
+from somersault._core.numbers import floats
 
 
 def fixed(values: Array) -> Array:
@@ -20,7 +22,7 @@ def fixed(values: Array) -> Array:
 
 def checked_times(t: ArrayLike) -> Array:
     """Finite times, or SomersaultError."""
-    times = np.asarray(t, float)
+    times = floats("times", t)
     if not np.all(np.isfinite(times)):
         raise SomersaultError("Times must be finite numbers in seconds; remove the others first.")
     return times
@@ -28,10 +30,10 @@ def checked_times(t: ArrayLike) -> Array:
 
 def unit_quaternion(given: ArrayLike) -> Array:
     """A quaternion (4,) of length one, or SomersaultError."""
-    numbers = np.asarray(given, float)
+    numbers = floats("attitude", given)
     size = float(np.linalg.norm(numbers)) if numbers.shape == (4,) else math.nan
     if not (math.isfinite(size) and size > 0):
         raise SomersaultError(
-            f"The attitude must be a quaternion [w, x, y, z] of finite numbers, not {given!r}."
+            f"The attitude must be a quaternion [w, x, y, z] of finite numbers, not {shown(given)}."
         )
     return numbers / size

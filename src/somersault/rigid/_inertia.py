@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
+from somersault._core.numbers import floats, number, together
 
 _FLAT = 1e-9  # by how much, relatively, rounding may break the triangle inequality of a flat body
 
@@ -17,7 +18,7 @@ def checked_inertias(inertias: ArrayLike) -> Array:
     Raises `SomersaultError` unless they are positive and finite and none exceeds the sum of
     the other two (which a flat body reaches).
     """
-    values = np.asarray(inertias, float)
+    values = floats("inertias", inertias)
     if values.shape != (3,):
         raise SomersaultError(
             f"A rigid body has three principal inertias, not an array of shape {values.shape}; "
@@ -61,7 +62,7 @@ def inertia_ratios(I1: ArrayLike, I2: ArrayLike, I3: ArrayLike) -> tuple[Array, 
     >>> print(f"{k1:.3f} {k3:.3f}")
     0.882 -0.625
     """
-    one, two, three = np.broadcast_arrays(*(np.asarray(i, float) for i in (I1, I2, I3)))
+    one, two, three = together(I1=I1, I2=I2, I3=I3)
     if not np.all((one > 0) & (two > 0) & (three > 0)):
         raise SomersaultError("Principal inertias must be positive; give them in kg m².")
     return (two - three) / one, (two - one) / three
@@ -92,7 +93,7 @@ def inertias_from_ratios(k1: ArrayLike, k3: ArrayLike) -> Array:
     >>> inertias_from_ratios(0.5, -0.5).tolist()
     [1.2, 1.0, 0.4]
     """
-    a, b = np.broadcast_arrays(np.asarray(k1, float), np.asarray(k3, float))
+    a, b = together(k1=k1, k3=k3)
     if not np.all((np.abs(a) <= 1) & (np.abs(b) <= 1) & (a * b < 1) & (a < 1) & (b < 1)):
         raise SomersaultError("Inertia ratios k1 and k3 lie between −1 and 1; give such a pair.")
     return np.stack([(1 - b) / (1 - a * b), np.ones_like(a), (1 - a) / (1 - a * b)], -1)
@@ -121,7 +122,7 @@ def quadrant(k1: ArrayLike, k3: ArrayLike) -> Array:
     >>> quadrant([0.7, 0.7], [0.5, -0.9]).tolist()
     [1, 4]
     """
-    a, b = np.sign(np.asarray(k1, float)), np.sign(np.asarray(k3, float))
+    a, b = (np.sign(k) for k in together(k1=k1, k3=k3))
     inside = np.where(b > 0, np.where(a > 0, 1, 2), np.where(a > 0, 4, 3))
     return np.where(a * b == 0, 0, inside)
 
@@ -152,9 +153,10 @@ def growth_angle(k1: ArrayLike, k3: ArrayLike, N: float = 10.0) -> Array:
     >>> round(float(growth_angle(0.687, -0.876)), 2)
     2.97
     """
-    if not N > 1:
+    if not number("N", N) > 1:
         raise SomersaultError(f"A mode that grows has a factor N above 1, not {N}.")
-    product = -np.asarray(k1, float) * np.asarray(k3, float)
+    a, b = together(k1=k1, k3=k3)
+    product = -a * b
     with np.errstate(divide="ignore"):
         return np.log(N) / np.sqrt(np.maximum(product, 0.0))
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
+from somersault._core.numbers import together
 from somersault.rigid._inertia import inertia_ratios
 
 
@@ -39,7 +40,7 @@ def gyric_matrices(I1: ArrayLike, I2: ArrayLike, I3: ArrayLike) -> tuple[Array, 
     [[0.0, 2.5], [-2.5, 0.0]]
     """
     inertia_ratios(I1, I2, I3)
-    one, two, three = np.broadcast_arrays(*(np.asarray(i, float) for i in (I1, I2, I3)))
+    one, two, three = together(I1=I1, I2=I2, I3=I3)
     nil = np.zeros_like(one)
     gyric = two - three - one
     entries = (
@@ -74,7 +75,8 @@ def gyric_roots(k1: ArrayLike, k3: ArrayLike) -> Array:
     >>> gyric_roots(0.5, -0.5).real.tolist()
     [0.0, -0.0, 0.5, -0.5]
     """
-    product = np.asarray(k1, float) * np.asarray(k3, float)
+    a, b = together(k1=k1, k3=k3)
+    product = a * b
     mode = np.sqrt(-product.astype(complex))
     steady = np.full_like(mode, 1j)
     return np.stack([steady, -steady, mode, -mode], -1)

@@ -10,10 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
+from somersault._core.checks import whole_number
 from somersault._core.errors import SomersaultError
+from somersault._core.numbers import floats, number, together
 from somersault.rigid._euler import energy_bounds
 from somersault.rigid._inertia import checked_inertias
 
+_MOST = 10_000_000  # points of a curve
 _ROUNDING = 1e-12  # by how much, relatively, an energy may miss its bounds
 
 
@@ -57,6 +60,7 @@ def energy_curve(
     """
     i = checked_inertias(inertias)
     least, middle, greatest = energy_bounds(i, momentum)
+    energy, points = number("energy", energy), whole_number("points", points, 1, _MOST)
     _not_spherical(i)
     if not least * (1 - _ROUNDING) <= energy <= greatest * (1 + _ROUNDING):
         raise SomersaultError(
@@ -113,6 +117,7 @@ def separatrix(inertias: ArrayLike, points: int = 361) -> Array:
     """
     i = checked_inertias(inertias)
     _not_spherical(i)
+    points = whole_number("points", points, 1, _MOST)
     minor, b, major = (int(p) for p in np.argsort(i, kind="stable"))
     delta = np.arctan2(np.sqrt(1 / i[minor] - 1 / i[b]), np.sqrt(1 / i[b] - 1 / i[major]))
     phase = np.linspace(0, 2 * np.pi, points)
@@ -146,7 +151,7 @@ def tilt_and_twist(cosines: ArrayLike) -> tuple[Array, Array]:
     >>> print(f"{tilt:.4f} {twist:.4f}")
     0.7854 0.0000
     """
-    c1, c2, c3 = np.moveaxis(np.asarray(cosines, float), -1, 0)
+    c1, c2, c3 = np.moveaxis(floats("cosines", cosines, 3), -1, 0)
     return np.arctan2(-c3, np.hypot(c1, c2)), np.arctan2(c1, c2)
 
 
@@ -172,7 +177,7 @@ def momentum_direction(tilt: ArrayLike, twist: ArrayLike) -> Array:
     >>> momentum_direction(0.0, np.pi / 2).round(3).tolist()
     [1.0, 0.0, -0.0]
     """
-    t, w = np.broadcast_arrays(np.asarray(tilt, float), np.asarray(twist, float))
+    t, w = together(tilt=tilt, twist=twist)
     return np.stack([np.sin(w) * np.cos(t), np.cos(w) * np.cos(t), -np.sin(t)], -1)
 
 

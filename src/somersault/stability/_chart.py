@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
-from somersault._core.checks import by_name, truth, whole_number
+from somersault._core.checks import by_name, shown, truth, whole_number
 from somersault._core.errors import SomersaultError
+from somersault._core.numbers import floats
 from somersault.model import Model
 from somersault.stability._grid import Grid, Values, grid, row, unit
 from somersault.stability._growth import definite, growth_rate
@@ -360,7 +361,7 @@ def _ends(along: Any) -> tuple[str, float, float]:
     if not isinstance(along, tuple | list) or len(along) != 3:
         raise SomersaultError(
             "what stable ranges are along is a name, a lower and a higher value, "
-            f"('stiffness.shoulder', -2, 4), not {along!r}"
+            f"('stiffness.shoulder', -2, 4), not {shown(along)}"
         )
     name, (low, high) = row("what stable ranges are along", (along[0], along[1:]))
     if not low < high:
@@ -373,7 +374,7 @@ def _ranges(
 ) -> list[list[tuple[float, float]]]:
     """Ranges of one quantity in which each case is stable: by looking, and then by halving."""
     whole_number("samples", samples, 2, _MOST_SAMPLES)
-    held = {key: np.asarray(value, float) for key, value in cases.fixed.items()}
+    held = {key: floats(key, value) for key, value in cases.fixed.items()}
     values = np.linspace(low, high, samples)
 
     def stable(at: Array, case: Array | None) -> Array:

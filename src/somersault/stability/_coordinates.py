@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.checks import instance, shown
 from somersault._core.errors import SomersaultError
 from somersault.model import Model, mirror_pairs, spread
 from somersault.stability._gyric import Attitude, blocks, together
@@ -126,12 +127,13 @@ def locked_speeds(model: Model, lock: str | Iterable[str]) -> frozenset[int]:
     >>> locked_speeds(so.load("furrer"), "shoulder")
     frozenset({0, 1})
     """
+    instance("model", model, Model)
     if isinstance(lock, str):
         lock = [lock]
     try:
         names = [str(name) for name in lock]
     except TypeError:
-        raise SomersaultError(f"lock takes joint names, and is {lock!r}") from None
+        raise SomersaultError(f"lock takes joint names, and is {shown(lock)}") from None
     if "all" in names:
         names = [joint.name for joint in model.joints]
     places: set[int] = set()

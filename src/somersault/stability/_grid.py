@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
-from somersault._core.checks import by_name
+from somersault._core.checks import by_name, shown
 from somersault._core.errors import SomersaultError
+from somersault._core.numbers import floats, require_together
 from somersault.dynamics import body_kind
 from somersault.model import Model, load, spread
 from somersault.model import pose as posed
@@ -99,9 +100,9 @@ def row(what: str, given: Any) -> tuple[str, Array]:
     try:
         name, values = given
         return str(name), np.asarray(values, float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise SomersaultError(
-            f"{what} is a name and values, ('pose.shoulder', [0, 1]), not {given!r}"
+            f"{what} is a name and values, ('pose.shoulder', [0, 1]), not {shown(given)}"
         ) from None
 
 
@@ -132,7 +133,7 @@ def _system(
     _require_definite(model, mass)
     none = np.zeros(len(model.speeds))
     springs, dampers = (
-        chosen.of_joints(strengths(model, kind, kinds[kind], steady.outboard, none))
+        chosen.of_joints(strengths(model, kind, kinds[kind], steady.outboard, none, many=True))
         for kind in ("stiffness", "damping")
     )
     return GyricSystem(chosen.names, mass, gyric, dampers, of_spin + springs, chosen.attitude)
@@ -140,15 +141,7 @@ def _system(
 
 def _shape(quantities: Values) -> tuple[int, ...]:
     """The shape to which all quantities broadcast."""
-    shapes = {name: np.shape(value) for name, value in quantities.items()}
-    try:
-        return np.broadcast_shapes(*shapes.values())
-    except ValueError:
-        listed = ", ".join(f"{name} {shape}" for name, shape in shapes.items() if shape)
-        raise SomersaultError(
-            f"these values do not go together: {listed}; give arrays of equal length, or of shapes "
-            "that broadcast"
-        ) from None
+    return require_together({name: floats(name, v).shape for name, v in quantities.items()})
 
 
 def _require_definite(model: Model, mass: Array) -> None:
@@ -172,7 +165,7 @@ def _sorted_kinds(model: Model, quantities: Values) -> dict[str, dict[str, Array
             kinds["body"][name] = value
         else:
             raise SomersaultError(
-                f"{name!r} is no quantity of {model.name}; use pose.JOINT, stiffness.JOINT, "
+                f"{shown(name)} is no quantity of {model.name}; use pose.JOINT, stiffness.JOINT, "
                 "damping.JOINT, bodies.BODY.mass, bodies.BODY.com.1, bodies.BODY.position.1 or "
                 "bodies.BODY.inertia.11"
             )

@@ -16,6 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError
 
 _DECOUPLED = 1e-10  # of two coordinates' inertias: what acts less than that is rounding
@@ -117,7 +118,7 @@ class GyricSystem:
         """Where a coordinate stands; SomersaultError, with those there are, if there is none."""
         if not isinstance(name, str) or name not in self.names:
             raise SomersaultError(
-                f"there is no coordinate {name!r}; there are {', '.join(self.names)}"
+                f"there is no coordinate {shown(name)}; there are {', '.join(self.names)}"
             )
         return self.names.index(name)
 

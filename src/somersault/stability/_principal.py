@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
+from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError
+from somersault._core.numbers import floats
 from somersault.model import FREE_IT, Model
 
 Axis = Literal["minor", "intermediate", "major", 1, 2, 3]
@@ -65,7 +67,9 @@ def principal_axes(inertia: ArrayLike) -> PrincipalAxes:
     """
     # A nudge picks the body's own axes where inertias are equal; `_sharpened` takes it out again
     # wherever the axes are determined.
-    inertia = np.asarray(inertia, float)
+    inertia = floats("inertia", inertia, 3, 3)
+    if not np.all(np.isfinite(inertia)):
+        raise SomersaultError("inertia has entries that are not finite; give finite numbers")
     nudge = (
         np.diag([3.0, 2.0, 1.0]) * 1e-11 * np.trace(inertia, axis1=-2, axis2=-1)[..., None, None]
     )
@@ -103,7 +107,7 @@ def axis_index(inertias: Array, axis: Axis | str | int) -> int:
     if str(axis) in _RANK:
         return int(np.argsort(inertias)[_RANK[str(axis)]])
     raise SomersaultError(
-        f"{axis!r} is no axis to spin about; use minor, intermediate, major, 1, 2 or 3"
+        f"{shown(axis)} is no axis to spin about; use minor, intermediate, major, 1, 2 or 3"
     )
 
 
