@@ -58,6 +58,11 @@ def principal_axes(inertia: ArrayLike) -> PrincipalAxes:
     PrincipalAxes
         Inertias (..., 3) and axes (..., 3, 3).
 
+    Raises
+    ------
+    SomersaultError
+        For entries that are not finite, and matrices of another shape.
+
     Examples
     --------
     >>> import numpy as np
