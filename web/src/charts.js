@@ -10,6 +10,7 @@ const HIGHEST = 230;
 const LEGEND = 32;
 const TIME_AXIS = 36; // more, of the last panel
 const UNITS = { "\u00b0": "\u00b0", 1: "" }; // as they stand after a number, the others after a space
+const LEAST_ROOM = 1e-2; // of any unit: what stands still is a line, not its rounding
 const FONT = "12px system-ui, sans-serif";
 
 export class Charts {
@@ -164,6 +165,6 @@ class Panel {
 /** Room above and below, and for what stands still. */
 function padded(_, low, high) {
   if (low === null || high === null) return [-1, 1];
-  const room = Math.max(0.08 * (high - low), 1e-3 * Math.max(Math.abs(low), Math.abs(high)), 1e-4);
+  const room = Math.max(0.08 * (high - low), 1e-3 * Math.max(Math.abs(low), Math.abs(high)), LEAST_ROOM);
   return [low - room, high + room];
 }

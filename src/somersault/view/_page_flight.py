@@ -17,7 +17,7 @@ from somersault.view._actor import Actor
 from somersault.view._page_model import block
 
 _STILL = 5e-3  # rad or m: joints that move less are not shown at first
-_MOST_LINES = 7  # that are shown at first
+_MOST_LINES, _STILL_LINES = 7, 2  # that are shown at first, and where none moves
 _POSES = 60  # that tell how far the body reaches
 
 
@@ -126,7 +126,7 @@ def _panel(
 ) -> dict[str, Any]:
     """A chart. Of many lines those are shown at first that move, and not too many."""
     moving = [k for k, (_, values) in enumerate(lines) if np.ptp(values) > still]
-    shown = set((moving or list(range(len(lines))))[:_MOST_LINES])
+    shown = set(moving[:_MOST_LINES] or range(min(len(lines), _STILL_LINES)))
     order = sorted(range(len(lines)), key=lambda k: k not in shown)
     return {
         "title": title,
