@@ -21,8 +21,8 @@ import somersault
 
 SOURCE = Path(somersault.__file__).parent
 COMPLETE = (  # rooms whose public calls say all that they should, and whose examples run
-    "attitude", "dynamics", "engine", "ensembles", "history", "model", "motion", "rigid", "spec",
-    "stability", "thesis", "view",
+    "attitude", "dynamics", "engine", "ensembles", "flight", "flight.behaviours",
+    "history", "model", "motion", "rigid", "spec", "stability", "thesis", "view",
 )  # fmt: skip
 FOR_USERS = ("attitude", "rigid", "stability")  # in which every call needs an example
 EXEMPLARY = sorted(
@@ -72,12 +72,18 @@ def descendants(cls: type) -> Iterator[type]:
         yield from descendants(sub)
 
 
+def members(cls: type) -> dict[str, Any]:
+    """What a class has of the package's, inherited or not."""
+    ours = [one for one in cls.__mro__ if one.__module__.startswith("somersault.")]
+    return {name: value for one in reversed(ours) for name, value in vars(one).items()}
+
+
 def calls(room: str) -> Iterator[tuple[str, Any, bool]]:
     """Public functions and classes, the methods of the classes, and whether users call them."""
     for name, value in public(importlib.import_module(f"somersault.{room}")):
         yield f"{room}.{name}", value, for_users(room, name)
         if inspect.isclass(value):
-            for method, function in vars(value).items():
+            for method, function in members(value).items():
                 bound = isinstance(function, classmethod | staticmethod)
                 if not method.startswith("_") and (bound or inspect.isfunction(function)):
                     yield f"{room}.{name}.{method}", function, for_users(room, name, method)

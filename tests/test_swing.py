@@ -12,8 +12,16 @@ from trees import mujoco_addresses, quiet, to_mujoco
 
 from somersault import SomersaultError
 from somersault.dynamics import Equations
-from somersault.flight import JointTakeoff, fly
-from somersault.flight._swing import GRAVITY, Prop, Swing, height_energy, released, swing
+from somersault.flight import (
+    GRAVITY,
+    JointTakeoff,
+    Prop,
+    Swing,
+    fly,
+    height_energy,
+    released,
+    swing,
+)
 from somersault.model import GROUND, Body, Joint, Model, Mount, load, mounted
 
 G = -GRAVITY[2]

@@ -130,6 +130,12 @@ class SymbolicEquations:
         ------
         SomersaultError
             For any other name, and for "inertia" of a fixed base.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> so.Equations("furrer").expression("mass_matrix").value.shape
+        (8, 8)
         """
         if name not in self.QUANTITIES:
             raise SomersaultError(

@@ -23,16 +23,10 @@ from somersault.flight._principal import (
     rigid_continuation,
 )
 from somersault.flight._prop import Prop
+from somersault.flight._release import Release, released
 from somersault.flight._report import ENDINGS, Report, landing_error, landing_target
 from somersault.flight._spec import KEYS
-from somersault.flight._swing import (
-    GRAVITY,
-    Release,
-    Swing,
-    height_energy,
-    released,
-    swing,
-)
+from somersault.flight._swing import GRAVITY, Swing, height_energy, swing
 from somersault.flight._takeoff import Takeoff
 from somersault.flight._twist_time import twist_time
 from somersault.flight._work import joint_power, joint_work

@@ -98,6 +98,13 @@ class BallisticPath:
         ------
         SomersaultError
             For a height that is never reached after takeoff, and without gravity.
+
+        Examples
+        --------
+        >>> from somersault.flight import BallisticPath
+        >>> path = BallisticPath((0.0, 0.0, 1.0), (0.0, 0.0, 4.905))
+        >>> round(path.time_to(1.0), 12)
+        1.0
         """
         drop = self.apex - number("height", height)
         time = (self.climb + float(np.sqrt(2 * self._pull * max(drop, 0.0)))) / self._pull
@@ -121,6 +128,12 @@ class BallisticPath:
         -------
         numpy.ndarray, shape (T, 3)
             x₀ + v t + ½ g t², inertial axes, m.
+
+        Examples
+        --------
+        >>> from somersault.flight import BallisticPath
+        >>> BallisticPath((0.0, 0.0, 1.0), (2.0, 0.0, 4.905)).at([1.0]).round(12).tolist()
+        [[2.0, 0.0, 1.0]]
         """
         t = numbers("times", times)[:, None]
         return self.position + t * self.velocity + 0.5 * t**2 * self.gravity

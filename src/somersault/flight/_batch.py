@@ -80,11 +80,36 @@ class Batch:
         return recorded(self)
 
     def sound(self, values: Values, count: int) -> Array:
-        """Whether each of `count` flights is one that could be asked for by itself, (count,)."""
+        """Whether each flight is one that could be asked for by itself.
+
+        Parameters
+        ----------
+        values : mapping of tuple to float or ndarray, (count,)
+            The numbers of the flights, by the names in `Batch.values`.
+        count : int
+            How many flights.
+
+        Returns
+        -------
+        ndarray of bool, (count,)
+        """
         return sound(self.joints, values, count)
 
     def begun(self, values: Values | None = None, count: int = 1) -> Begun:
-        """`count` flights whose numbers are `values`, by default the takeoff's own."""
+        """The flights at takeoff.
+
+        Parameters
+        ----------
+        values : mapping of tuple to float or ndarray, (count,), optional
+            The numbers of the flights, by the names in `Batch.values`; by default the takeoff's
+            own.
+        count : int
+            How many flights.
+
+        Returns
+        -------
+        Begun
+        """
         given = self.values if values is None else values
         return Begun(self, starts(self.system, self.takeoff, self.joints, given, count))
 
@@ -127,7 +152,21 @@ class Begun:
         return self.batch.system.start(s.quaternion, s.omega, s.q, s.u)
 
     def solve(self, samples: Array, accuracy: float, most_steps: int = MOST_STEPS) -> Solution:
-        """The flights, with states at `samples` (K,) or (N, K), s; `accuracy` in rad."""
+        """Integrate the flights.
+
+        Parameters
+        ----------
+        samples : ndarray, (K,) or (N, K)
+            Times at which states are kept, s.
+        accuracy : float
+            Of the attitude, rad.
+        most_steps : int
+            A flight that has taken so many ends.
+
+        Returns
+        -------
+        Solution
+        """
         tolerance = accuracy * TOLERANCE_PER_ACCURACY
         with np.errstate(over="ignore", invalid="ignore"):
             return self.course.solve(self.rows, samples, tolerance, most_steps)

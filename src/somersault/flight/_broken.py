@@ -9,7 +9,18 @@ BROKEN = ("too many steps", "not finite")
 
 
 def why_broken(flight: Flight) -> str:
-    """In a sentence, what ended a flight before its time and what to do about it."""
+    """Why a flight broke off, and what to do about it.
+
+    Parameters
+    ----------
+    flight : Flight
+        That ended with one of `BROKEN`.
+
+    Returns
+    -------
+    str
+        In a sentence.
+    """
     if flight.ended == "not finite":
         return "its motion is no longer finite; a spring, damper or move is too stiff or fast"
     given_up = f"it had taken {flight.steps} steps of the integration"

@@ -62,6 +62,11 @@ def deviated_flight(
     -------
     Flight
 
+    Raises
+    ------
+    SomersaultError
+        For what does not fit the spin's model.
+
     Examples
     --------
     >>> import somersault as so

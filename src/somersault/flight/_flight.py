@@ -323,13 +323,40 @@ class Flight(Filmed):
         }  # fmt: skip
 
     def plot(self) -> Figure:
-        """The history as a matplotlib picture (`.savefig(file)` writes it)."""
+        """The history as a picture.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Its `.savefig(file)` writes it.
+        """
         from somersault.view import time_histories
 
         return time_histories(self, f"{self.model.name}, ended by {self.ended}")
 
     def save(self, path: str | Path) -> None:
-        """Write the history as NetCDF (.nc) or CSV (.csv), whole or not at all."""
+        """Write the history to a file, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or Path
+            A NetCDF file (.nc) or a table (.csv).
+
+        Raises
+        ------
+        SomersaultError
+            For a file of another kind, or one that cannot be written.
+
+        Examples
+        --------
+        >>> from tempfile import TemporaryDirectory
+        >>> import somersault as so
+        >>> flight = so.fly("furrer", so.Takeoff(spin=8.64), 0.5)
+        >>> with TemporaryDirectory() as folder:
+        ...     flight.save(f"{folder}/layout.nc")
+        ...     so.read_recording(f"{folder}/layout.nc", flight.model)
+        Recording of furrer: 51 samples, 0 to 0.5 s
+        """
         save_history(self.dataset, Path(path))
 
 

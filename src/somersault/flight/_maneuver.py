@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -18,13 +18,13 @@ from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault._core.numbers import number, numbers
 from somersault.flight._batch import Batch
 from somersault.flight._broken import BROKEN, why_broken
-from somersault.flight._compliance import compliant, off_nominal, with_momentum
 from somersault.flight._flight import Flight
 from somersault.flight._flown import flown
 from somersault.flight._prescribed import prescribed
 from somersault.flight._spec import parsed, tables
 from somersault.flight._takeoff import Takeoff, require_takeoff
-from somersault.flight.behaviours import JointTakeoff, OnPath
+from somersault.flight._variants import Variants
+from somersault.flight.behaviours import OnPath
 from somersault.model import Model, load
 from somersault.motion import Motion
 from somersault.spec import read_toml, write_toml
@@ -36,7 +36,7 @@ _MOST_SAMPLES = 5_000_000
 
 
 @dataclass(frozen=True, eq=False)
-class Maneuver:
+class Maneuver(Variants):
     """What a model does in the air, from takeoff to landing.
 
     Parameters
@@ -159,6 +159,13 @@ class Maneuver:
         -------
         Flight
             Where it broke off, with a SomersaultWarning that says why.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> layout = so.Maneuver("furrer", so.Takeoff(spin=8.64), 0.5)
+        >>> layout.fly(samples=11).times.shape
+        (11,)
         """
         if options:
             return self.changed(**options).fly()
@@ -190,94 +197,93 @@ class Maneuver:
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Maneuver:
-        """The maneuver in a TOML file, a SPEC as `somersault fly` takes it.
+        r"""The maneuver in a TOML file, a SPEC as `somersault fly` takes it.
 
         Parameters
         ----------
         path : str or path-like
             Its model, and its recording if it has one, are looked for beside it.
 
+        Returns
+        -------
+        Maneuver
+
         Raises
         ------
         SomersaultError
             Naming the key, for what does not fit.
+
+        Examples
+        --------
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> import somersault as so
+        >>> with TemporaryDirectory() as folder:
+        ...     spec = Path(folder) / "layout.toml"
+        ...     _ = spec.write_text('model = "furrer"\nduration = 0.5\n[takeoff]\nspin = 8.64\n')
+        ...     so.Maneuver.read(spec).duration
+        0.5
         """
         file = Path(path)
         return cls.parse(read_toml(file), file.parent)
 
     @classmethod
     def parse(cls, tables: Mapping[str, Any], beside: str | os.PathLike[str] = ".") -> Maneuver:
-        """The maneuver that the tables of a SPEC describe; files are looked for in a folder."""
+        """The maneuver that the tables of a SPEC describe.
+
+        Parameters
+        ----------
+        tables : mapping
+            As TOML has them.
+        beside : path-like
+            The folder in which files that they name are looked for.
+
+        Returns
+        -------
+        Maneuver
+
+        Raises
+        ------
+        SomersaultError
+            Naming the key, for what does not fit.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> spec = {"model": "furrer", "duration": 0.5, "takeoff": {"spin": 8.64}}
+        >>> so.Maneuver.parse(spec).duration
+        0.5
+        """
         return cls(**parsed(tables, Path(beside)))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the maneuver as a TOML file, whole or not at all.
+         It flies the same, bit for bit, when it is read again, and by `somersault fly`. A model
+        that does not ship with the package is written to the same folder as MJCF.
 
-        It flies the same, bit for bit, when it is read again, and by `somersault fly`. A model that
-        does not ship is written beside it as MJCF.
+        Parameters
+        ----------
+        path : str or path-like
+
+        Raises
+        ------
+        SomersaultError
+            For what a SPEC cannot hold, or a file that cannot be written.
+
+        Examples
+        --------
+        >>> from tempfile import TemporaryDirectory
+        >>> import somersault as so
+        >>> layout = so.Maneuver("furrer", so.Takeoff(spin=8.64), 0.5)
+        >>> with TemporaryDirectory() as folder:
+        ...     layout.save(f"{folder}/layout.toml")
+        ...     so.Maneuver.read(f"{folder}/layout.toml").duration
+        0.5
         """
         file = Path(path)
         write_toml(file, tables(self, file))
 
     # -------------------------------------------------------------------- other maneuvers
-
-    def changed(self, **fields: Any) -> Maneuver:
-        """The same with other fields; SomersaultError for what a maneuver does not have."""
-        for name in fields:
-            if name not in self.__dataclass_fields__:
-                known = ", ".join(self.__dataclass_fields__)
-                raise SomersaultError(f"{name} is no part of a maneuver; there are {known}")
-        return replace(self, **fields)
-
-    def compliant(
-        self,
-        natural_frequency: float,
-        damping_ratio: float = 0.7,
-        *,
-        pose: Mapping[str, float] | float | str,
-        **options: Any,
-    ) -> Maneuver:
-        """The same with a body that gives way about the motion: see `somersault.compliant`."""
-        takeoff = compliant(
-            self.model, self.takeoff, natural_frequency, damping_ratio, pose=pose, **options
-        )
-        return replace(self, takeoff=takeoff)
-
-    def from_takeoff(self, takeoff: Takeoff) -> Maneuver:
-        """The same moves from another takeoff, whose own joints do otherwise what they say."""
-        joints = {**self.takeoff.joints, **takeoff.joints}
-        return replace(self, takeoff=replace(takeoff, joints=joints))
-
-    def with_momentum(self) -> Maneuver:
-        """The same, its rotation given as angular momentum: see `somersault.with_momentum`."""
-        return replace(self, takeoff=with_momentum(self.model, self.takeoff))
-
-    def off_nominal(
-        self, *, somersault: float = 0.0, tilt: float = 0.0, twist: float = 0.0
-    ) -> Maneuver:
-        """The same from an attitude that is so far off, rad: see `somersault.off_nominal`."""
-        takeoff = off_nominal(
-            self.model, self.takeoff, somersault=somersault, tilt=tilt, twist=twist
-        )
-        return replace(self, takeoff=takeoff)
-
-    def scaled(self, factor: float) -> Maneuver:
-        """The same moves in `factor` times their time; it takes off as before.
-
-        Raises SomersaultError unless the factor is positive.
-        """
-        if number("factor", factor) <= 0:
-            raise SomersaultError(f"factor {factor:g} turns time back or stops it; give one over 0")
-        moved = self._retimed(lambda does: does.scaled_in_time(factor))
-        return replace(moved, duration=factor * self.duration)
-
-    def reversed(self) -> Maneuver:
-        """The same moves from the last to the first; it takes off as before."""
-        return self._retimed(lambda does: does.reversed_in_time(self.duration))
-
-    def _retimed(self, change: Callable[[JointTakeoff], JointTakeoff]) -> Maneuver:
-        joints = {name: change(does) for name, does in self.takeoff.joints.items()}
-        return replace(self, takeoff=replace(self.takeoff, joints=joints))
 
 
 def flight_time(duration: float) -> float:

@@ -113,22 +113,76 @@ class Flights:
         return min(_TOGETHER, max(_TOGETHER_BYTES // (8 * doubles), _FEWEST_TOGETHER))
 
     def targets(self, path: str) -> tuple[Target, ...]:
-        """The numbers that a name like "takeoff.tilt" means; SomersaultError for one that is not
-        there."""
+        """The numbers that a name means.
+
+        Parameters
+        ----------
+        path : str
+            "takeoff.tilt", say.
+
+        Returns
+        -------
+        tuple of Target
+
+        Raises
+        ------
+        SomersaultError
+            For a name that means none of them.
+        """
         return targets(self.batch, path)
 
     def with_varied(self, names: tuple[Name, ...]) -> Flights:
-        """The same flights, to differ in these numbers."""
+        """The same flights, ready to differ in some numbers.
+
+        Parameters
+        ----------
+        names : tuple of tuple
+            Of the numbers, as the targets have them.
+
+        Returns
+        -------
+        Flights
+
+        Raises
+        ------
+        SomersaultError
+            For what cannot fly.
+        """
         batch = replace(self.batch, bodies=body_names(names))
         _ = batch.system  # refuses what cannot fly, before anything is written
         return replace(self, batch=batch, varied=names)
 
     def sound(self, values: Numbers, count: int) -> Array:
-        """Whether each flight can take off, (count,)."""
+        """Whether each flight can take off.
+
+        Parameters
+        ----------
+        values : mapping of tuple to float or ndarray, (count,)
+            The numbers of the flights.
+        count : int
+            How many flights.
+
+        Returns
+        -------
+        ndarray of bool, (count,)
+        """
         return self.batch.sound(values, count)
 
     def run(self, values: Numbers, count: int) -> dict[str, Array]:
-        """What is reported of `count` flights, and how they ended."""
+        """Fly, and report.
+
+        Parameters
+        ----------
+        values : mapping of tuple to float or ndarray, (count,)
+            The numbers of the flights.
+        count : int
+            How many flights.
+
+        Returns
+        -------
+        dict of str to ndarray, (count, …)
+            What is reported of each, and how it ended.
+        """
         begun = self.batch.begun(values, count)
         watch_from_takeoff(self.report, begun)
         samples = self.times if len(self.times) else np.array([self.batch.duration])

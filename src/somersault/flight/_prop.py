@@ -57,6 +57,23 @@ class Prop:
             raise SomersaultError(f"a prop's damping is not negative, and is {self.damping:g}")
 
     def torque(self, q: Any, u: Any) -> Any:
-        """What it gives at a coordinate and its rate, N m; symbols or arrays."""
+        """What the prop gives at a joint.
+
+        Parameters
+        ----------
+        q, u : float, array or symbol
+            The joint's coordinate, rad, and rate, rad/s.
+
+        Returns
+        -------
+        of the kind that q and u are
+            N m.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> float(so.Prop(0.0, side=-1, stiffness=1e4).torque(0.01, 0.0))
+        -100.0
+        """
         passed = ca.fmax(self.side * (self.angle - q), 0)
         return self.side * self.stiffness * passed * ca.fmax(1 - self.damping * self.side * u, 0)

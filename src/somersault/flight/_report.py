@@ -61,7 +61,24 @@ class Report:
         whole_number("report.samples", self.samples, 0, _MOST_SAMPLES)
 
     def times(self, duration: float) -> Array:
-        """The times of a history, (samples,), s; none without one."""
+        """The times of a reported history.
+
+        Parameters
+        ----------
+        duration : float
+            Of the flights, s.
+
+        Returns
+        -------
+        ndarray, (samples,)
+            s; empty if no history is reported.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> so.Report(history=["tilt"], samples=3).times(1.0).tolist()
+        [0.0, 0.5, 1.0]
+        """
         return np.linspace(0.0, duration, self.samples) if self.history else np.empty(0)
 
 

@@ -7,7 +7,7 @@ no velocity, so `released` reads the takeoff of the free model off the last mome
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -19,19 +19,12 @@ from somersault._core.array import Array
 from somersault._core.checks import by_name, instance, whole_number
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number, numbers
-from somersault.attitude import quaternion_from_matrix
 from somersault.dynamics import Equations
 from somersault.engine import STATUS, Integrator
 from somersault.flight._prop import Prop
-from somersault.flight._takeoff import Takeoff
-from somersault.flight.behaviours import JointTakeoff
 from somersault.history import summary
 from somersault.model import (
-    Joint,
     Model,
-    Mount,
-    body_frames,
-    body_velocities,
     centre_of_mass,
     pose,
     spread,
@@ -157,25 +150,6 @@ class Swing(Filmed):
         return list(zip(self.q.tolist(), self.u.tolist(), strict=True))
 
 
-@dataclass(frozen=True)
-class Release:
-    """A body that has been let go.
-
-    Attributes
-    ----------
-    takeoff : Takeoff
-        Of the free body, with the position of its centre of mass.
-    centre : ndarray, (3,)
-        Where its centre of mass is, in the ground's axes, m.
-    time : float
-        When, s.
-    """
-
-    takeoff: Takeoff
-    centre: Array
-    time: float
-
-
 def swing(
     model: Model,
     angles: Mapping[str, float],
@@ -251,84 +225,22 @@ def swing(
     return Swing(model, g, props, moments, states[:, :n], states[:, n:], ended)
 
 
-def released(
-    swung: Swing, mount: Mount, joints: Mapping[str, JointTakeoff] | None = None
-) -> Release:
-    """The takeoff of the body that a mount lets go at the end of a swing.
-
-    Letting go changes no position and no velocity: attitude, angular velocity, the velocity of the
-    centre of mass, joint angles and rates are those of the last moment.
+def height_energy(equations: Equations, q: ArrayLike, gravity: ArrayLike = GRAVITY) -> Array:
+    """Potential energy of a model with a fixed base in gravity.
 
     Parameters
     ----------
-    swung : Swing
-        Of `mount.held`.
-    mount : Mount
-    joints : mapping of str to JointTakeoff, optional
-        What each joint does in flight; its angle and rate are filled in. A joint that is not named
-        keeps its spring and damper.
+    equations : Equations
+        Of the model.
+    q : array_like, (…, coordinates)
+        Joint coordinates.
+    gravity : array_like, (3,)
+        m/s², in the ground's axes.
 
     Returns
     -------
-    Release
-
-    Raises
-    ------
-    SomersaultError
-        For the swing of another model.
-    """
-    instance("what is released", swung, Swing)
-    instance("mount", mount, Mount)
-    if swung.model != mount.held:
-        raise SomersaultError(f"this is a swing of {swung.model.name}, not of the mount given")
-    q, u = swung.q[-1], swung.u[-1]
-    turn, origin, omega, velocity = _base_motion(mount, q, u)
-    ahead = len(mount.carrier.joints)
-    rider = mount.rider
-    own, own_rates = q[ahead:], u[ahead:]
-    still = np.concatenate([omega, velocity, own_rates])
-    linear = Equations(rider).momentum(own, still)[3:] / rider.mass
-    setups = by_name("joints", joints)
-    for name, setup in setups.items():
-        instance(f"takeoff of joint {name}", setup, JointTakeoff)
-        rider.joint(name)
-    takeoffs = {
-        joint.name: _let_go(joint, setups.get(joint.name), own[k], own_rates[k])
-        for k, joint in enumerate(rider.joints)
-    }
-    centre = origin + turn @ centre_of_mass(rider, own)
-    takeoff = Takeoff(
-        quaternion=quaternion_from_matrix(turn).tolist(),
-        angular_velocity=omega.tolist(),
-        position=centre.tolist(),
-        velocity=(turn @ linear).tolist(),
-        joints=takeoffs,
-    )
-    return Release(takeoff, centre, float(swung.times[-1]))
-
-
-def _base_motion(mount: Mount, q: Array, u: Array) -> tuple[Array, Array, Array, Array]:
-    """The rider's base turned in the ground's axes, its origin there, and its angular velocity and
-    its origin's velocity in its own axes."""
-    (carrier, *_), (foot, *_) = body_frames(mount.held, q)
-    (spin, *_), (rate, *_) = body_velocities(mount.held, q, u)
-    turn, arm = carrier @ np.array(mount.rotation), carrier @ np.array(mount.position)
-    return turn, foot + arm, turn.T @ spin, turn.T @ (rate + np.cross(spin, arm))
-
-
-def _let_go(joint: Joint, given: JointTakeoff | None, angle: float, rate: float) -> JointTakeoff:
-    if given is None:
-        given = JointTakeoff("sprung" if joint.stiffness else "free").settled(joint)
-    here: dict[str, Any] = {"angle": float(angle)}
-    if given.in_state:
-        here["rate"] = float(rate)
-    return replace(given, **here)
-
-
-def height_energy(equations: Equations, q: ArrayLike, gravity: ArrayLike = GRAVITY) -> Array:
-    """Potential energy (…) in J of a model with a fixed base at joint coordinates (…, n).
-
-    Zero with its centre of mass at the height of the ground's origin.
+    ndarray, (…)
+        J; zero with the centre of mass at the height of the ground's origin.
     """
     model = equations.model
     return -model.mass * centre_of_mass(model, q) @ np.asarray(gravity, float)

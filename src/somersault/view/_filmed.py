@@ -63,6 +63,13 @@ class Filmed:
         Returns
         -------
         ndarray of uint8, (height, width, 3)
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> flight = so.fly("furrer", so.Takeoff(spin=8.6, tilt=0.05), 0.1)
+        >>> flight.frame(0.05, size=(160, 90)).shape
+        (90, 160, 3)
         """
         return frame(self, time, **look)  # type: ignore[arg-type]
 
@@ -97,6 +104,14 @@ class Filmed:
             Frames in a row.
         **look
             As of a film; `size` is that of each frame.
+
+        Examples
+        --------
+        >>> from tempfile import TemporaryDirectory
+        >>> import somersault as so
+        >>> flight = so.fly("furrer", so.Takeoff(spin=8.6, tilt=0.05), 0.1)
+        >>> with TemporaryDirectory() as folder:
+        ...     flight.picture(f"{folder}/layout.png", [0.0, 0.1], size=(160, 90))
         """
         picture(self, path, times, columns, **look)  # type: ignore[arg-type]
 
@@ -116,5 +131,14 @@ class Filmed:
             s, or how many from beginning to end.
         **look
             As of a film.
+
+        Examples
+        --------
+        >>> from tempfile import TemporaryDirectory
+        >>> import somersault as so
+        >>> rising = so.Takeoff(spin=8.6, velocity=(2.0, 0.0, 3.0))
+        >>> flight = so.fly("furrer", rising, 0.6, gravity=(0.0, 0.0, -9.81))
+        >>> with TemporaryDirectory() as folder:
+        ...     flight.stroboscopic_picture(f"{folder}/layout.png", 3, size=(160, 90))
         """
         stroboscopic_picture(self, path, times, **look)  # type: ignore[arg-type]

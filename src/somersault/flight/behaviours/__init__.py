@@ -2,20 +2,15 @@
 
 from somersault.flight.behaviours._as_modelled import AsModelled
 from somersault.flight.behaviours._begin import begin
-from somersault.flight.behaviours._behaviour import (
-    Angle,
-    Here,
-    JointPlan,
-    JointTakeoff,
-    Known,
-    kinds,
-)
+from somersault.flight.behaviours._behaviour import Angle, JointTakeoff
 from somersault.flight.behaviours._compliant import Compliant, softened
 from somersault.flight.behaviours._coupled import Coupled, check_coupled, leaders
 from somersault.flight.behaviours._declared import declared, quantity, side_by_side
 from somersault.flight.behaviours._free import Free
+from somersault.flight.behaviours._here import Here, Known
 from somersault.flight.behaviours._locked import Locked
 from somersault.flight.behaviours._moving import Moving, Stopped
+from somersault.flight.behaviours._plan import JointPlan, kinds
 from somersault.flight.behaviours._prescribed import OnPath, Prescribed
 from somersault.flight.behaviours._sprung import Sprung
 from somersault.flight.behaviours._torque import Torque

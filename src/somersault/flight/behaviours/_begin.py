@@ -6,13 +6,27 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault.flight._values import Values
-from somersault.flight.behaviours._behaviour import JointPlan
 from somersault.flight.behaviours._coupled import leaders
 from somersault.flight.behaviours._declared import side_by_side
+from somersault.flight.behaviours._plan import JointPlan
 
 
 def begin(plans: tuple[JointPlan, ...], values: Values, count: int) -> tuple[Array, Array]:
-    """Coordinates (count, coordinates) and speeds (count, speeds) of all joints at takeoff."""
+    """Coordinates and speeds of all joints at takeoff.
+
+    Parameters
+    ----------
+    plans : tuple of JointPlan
+    values : mapping of tuple to float or ndarray, (count,)
+        The numbers of the flights.
+    count : int
+        How many flights.
+
+    Returns
+    -------
+    q : ndarray, (count, coordinates)
+    u : ndarray, (count, speeds)
+    """
     led = leaders(plans)
     parts: dict[str, tuple[Array, Array]] = {}
     for plan in plans:

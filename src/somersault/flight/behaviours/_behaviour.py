@@ -7,7 +7,7 @@ which arrays go into them. Nothing else in the package knows which behaviours th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
@@ -17,8 +17,11 @@ from somersault._core.array import Array
 from somersault._core.checks import truth
 from somersault._core.errors import SomersaultError
 from somersault.flight._values import Name, Values
-from somersault.flight.behaviours import _declared
-from somersault.model import LIMIT_SLACK, Joint, Model
+from somersault.flight.behaviours import _changed, _declared
+from somersault.flight.behaviours._here import Here, Known
+from somersault.flight.behaviours._limits import within
+from somersault.flight.behaviours._registry import Registry, behaviour_names
+from somersault.model import Joint, Model
 from somersault.motion import Path
 
 Self = TypeVar("Self", bound="JointTakeoff")
@@ -26,93 +29,8 @@ Angle = float | Sequence[float] | None
 """Of a joint: a number, or three for a ball."""
 
 
-class _Registry(type):
-    """Makes `JointTakeoff("sprung", …)` and `JointTakeoff.sprung(…)` out of the class that is
-    called so, and turns a key that the class does not have into one sentence."""
-
-    classes: ClassVar[dict[str | None, type[JointTakeoff]]] = {}
-
-    def __call__(cls, *given: Any, **named: Any) -> Any:
-        if cls._root():
-            motion, *rest = given or (named.pop("motion", None),)
-            return _class(motion)(*rest, **named)
-        named = cls.keys_of(named)
-        if len(given) > len(cls._keys()):
-            raise SomersaultError(f"a joint that is {cls._called()} takes {_listed(cls._keys())}")
-        return super().__call__(*given, **named)
-
-    def __getattr__(cls, name: str) -> Any:
-        if cls._root() and name in _Registry.classes:
-            return _Registry.classes[name]
-        known = "" if name.startswith("_") else f"; behaviours are {_listed(_names())}"
-        raise AttributeError(f"{cls.__name__} has no {name!r}{known}")
-
-    def kind_of(cls, motion: str | None) -> type[JointTakeoff]:
-        """The behaviour of a name; SomersaultError if there is none."""
-        return _class(motion)
-
-    def keys_of(cls, given: Mapping[str, Any]) -> dict[str, Any]:
-        """Those of some numbers by name that this behaviour has.
-
-        What it does not have may be nothing (0, false, none), and is left out; SomersaultError
-        for anything else.
-        """
-        for key in given:
-            if key not in cls._keys() and not (key in _every_key() and _nothing(given[key])):
-                raise SomersaultError(_refusal(cls, key))
-        return {key: value for key, value in given.items() if key in cls._keys()}
-
-    def _root(cls) -> bool:
-        return cls.__mro__[1] is object  # `JointTakeoff` itself
-
-    def _keys(cls) -> list[str]:
-        every = getattr(cls, "__dataclass_fields__", {})
-        return [name for name in every if name not in JointTakeoff.__annotations__]
-
-    def _called(cls) -> str:
-        return cls.motion or "as modelled"
-
-
 @dataclass(frozen=True)
-class Here:
-    """A joint in symbols, as its behaviour sees it.
-
-    `q` and `u` are its coordinates and speeds, `numbers` its parameters by name, `paths` the
-    value, rate and acceleration of each of its paths now. `outboard` gives, for each of its speeds,
-    the inertia about its axis of all that is outboard, in the pose in which the paths have the
-    body. `tape` is the motor tape's torque. `leader` is the joint that it follows.
-    """
-
-    joint: Joint
-    q: list[Any]
-    u: list[Any]
-    time: Any
-    numbers: Mapping[str, Any]
-    paths: tuple[tuple[Any, Any, Any], ...]
-    outboard: Callable[[], list[Any]]
-    tape: Any = 0.0
-    leader: Known | None = None
-
-    def at(self, known: Known) -> Here:
-        """The same where a joint that is no part of the state is."""
-        return replace(self, q=known.q, u=known.u)
-
-    def following(self, leader: Known | None) -> Here:
-        """The same with the joint that it follows."""
-        return replace(self, leader=leader)
-
-
-@dataclass(frozen=True)
-class Known:
-    """Coordinates, speeds and accelerations of a joint; no accelerations where it moves freely."""
-
-    q: list[Any]
-    u: list[Any]
-    a: list[Any]
-
-
-@dataclass(frozen=True)
-class JointTakeoff(metaclass=_Registry):
+class JointTakeoff(metaclass=Registry):
     """One joint at takeoff and after.
 
     `JointTakeoff.NAME(…)`, or `JointTakeoff("NAME", …)`, is a joint that does so:
@@ -161,22 +79,44 @@ class JointTakeoff(metaclass=_Registry):
         super().__init_subclass__(**more)
         if motion is not None:
             cls.motion = motion
-            _Registry.classes[motion] = cls
+            Registry.classes[motion] = cls
 
     def standard(self) -> dict[str, Any]:
-        """Its fields by name, and what each is where nothing is given."""
+        """Its fields by name, with their defaults.
+
+        Returns
+        -------
+        dict
+        """
         return {f.name: f.default for f in fields(self)}
 
     def is_named(self) -> bool:
-        """Whether it has a name of its own, and is not what the model says."""
-        return self.motion in _names()
+        """Whether it has a name, and is not what the model says.
+
+        Returns
+        -------
+        bool
+        """
+        return self.motion in behaviour_names()
 
     # -------------------------------------------------------------- from what was asked for
 
     def settled(self, joint: Joint) -> JointTakeoff:
-        """The same with all that the model leaves open filled in, its numbers floats or tuples.
+        """The same with all that it leaves open filled in from the model.
 
-        Raises SomersaultError for what does not fit the joint.
+        Parameters
+        ----------
+        joint : Joint
+
+        Returns
+        -------
+        JointTakeoff
+            Its numbers are floats or tuples of floats.
+
+        Raises
+        ------
+        SomersaultError
+            For what does not fit the joint.
         """
         return self._checked(joint)
 
@@ -197,19 +137,26 @@ class JointTakeoff(metaclass=_Registry):
         return replace(self, **changes)
 
     def mirrored(self: Self, model: Model, name: str, factor: float, offset: float) -> Self:
-        """What the mirrored joint does: angles are offset + factor times this one's.
+        """What the joint on the other side does, seen in a mirror.
 
-        `name` is the joint that this one is for, as a message has it.
+        Parameters
+        ----------
+        model : Model
+        name : str
+            The joint that this one is for.
+        factor, offset : float
+            An angle's image is offset + factor · angle.
+
+        Returns
+        -------
+        JointTakeoff
+
+        Raises
+        ------
+        SomersaultError
+            For what has no mirror image.
         """
-        joint = model.joint(name)
-        changes: dict[str, Any] = {}
-        for key, what in _declared.declared(self).items():
-            value = _declared.checked(f"joint {name}", joint, key, what, getattr(self, key))
-            if value is None or what.image == "same":
-                continue
-            by, about = factor, offset if what.image == "angle" else 0.0
-            row = isinstance(value, tuple)
-            changes[key] = [about + by * x for x in value] if row else about + by * value
+        changes = _changed.mirrored(self, model.joint(name), factor, offset)
         for one in fields(self):
             path = getattr(self, one.name)
             if isinstance(path, Path):
@@ -221,82 +168,199 @@ class JointTakeoff(metaclass=_Registry):
         return path.image(factor, offset)
 
     def scaled_in_time(self: Self, factor: float) -> Self:
-        """The same in `factor` times its time."""
-        changes: dict[str, Any] = {}
-        for one in fields(self):
-            value = getattr(self, one.name)
-            if isinstance(value, Path):
-                changes[one.name] = value.scaled(factor)
-            elif one.name == "times":
-                changes[one.name] = tuple(factor * np.asarray(value, float))
-        return replace(self, **changes)
+        """The same in another time.
+
+        Parameters
+        ----------
+        factor : float
+            Its times are multiplied by it.
+
+        Returns
+        -------
+        JointTakeoff
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> raised = so.JointTakeoff.prescribed(times=[0.0, 0.2], angles=[0.0, 1.2])
+        >>> [float(time) for time in raised.scaled_in_time(2.0).times]
+        [0.0, 0.4]
+        """
+        return replace(self, **_changed.scaled(self, factor))
 
     def reversed_in_time(self: Self, end: float) -> Self:
-        """The same backwards: at t what it was at `end` - t, s."""
-        changes: dict[str, Any] = {}
-        rows = [name for name, what in _declared.declared(self).items() if what.row]
-        for one in fields(self):
-            value = getattr(self, one.name)
-            if isinstance(value, Path):
-                changes[one.name] = value.reversed(end)
-            elif one.name in rows:
-                row = np.asarray(value, float)[::-1]
-                changes[one.name] = tuple(end - row if one.name == "times" else row)
-        return replace(self, **changes)
+        """The same backwards: at t what it was at `end` − t.
+
+        Parameters
+        ----------
+        end : float
+            s.
+
+        Returns
+        -------
+        JointTakeoff
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> raised = so.JointTakeoff.prescribed(times=[0.0, 0.2], angles=[0.0, 1.2])
+        >>> [float(angle) for angle in raised.reversed_in_time(1.0).angles]
+        [1.2, 0.0]
+        """
+        return replace(self, **_changed.reversed_(self, end))
 
     # --------------------------------------------------------------- what decides equations
 
     def kind(self: Self) -> Self:
-        """The same without its numbers: joints of one kind share their equations."""
+        """The same without its numbers: joints of one kind share their equations.
+
+        Returns
+        -------
+        JointTakeoff
+        """
         kept = {f.name: getattr(self, f.name) for f in fields(self) if f.metadata.get("structure")}
         return type(self)(**kept)
 
     def parameters(self, joint: Joint) -> tuple[str, ...]:
-        """Names of its lasting parameters."""
+        """Names of the parameters of its equations that stay as they are in a flight.
+
+        Parameters
+        ----------
+        joint : Joint
+
+        Returns
+        -------
+        tuple of str
+        """
         return ()
 
     def place(self, here: Here) -> Known:
-        """Where it is, of a joint that is no part of the state."""
+        """Where it is; of a joint that is no part of the state.
+
+        Parameters
+        ----------
+        here : Here
+
+        Returns
+        -------
+        Known
+        """
         raise NotImplementedError
 
     def loads(self, here: Here) -> list[Any]:
-        """What acts at each of its speeds, N m, of a joint that is part of the state."""
+        """What acts at each of its speeds; of a joint that is part of the state.
+
+        Parameters
+        ----------
+        here : Here
+
+        Returns
+        -------
+        list
+            N m (N for a slide), symbols.
+        """
         raise NotImplementedError
 
     def wanted(self, here: Here) -> list[Any]:
-        """Coordinates in the pose in which the paths have the body."""
+        """Its coordinates in the pose in which the paths have the body.
+
+        Parameters
+        ----------
+        here : Here
+
+        Returns
+        -------
+        list
+        """
         return here.q
 
     # -------------------------------------------------------------------------- its numbers
 
     def numbers(self, joint: Joint) -> dict[Name, float | Array]:
-        """The numbers that may differ between flights, by name."""
+        """The numbers that may differ between flights.
+
+        Parameters
+        ----------
+        joint : Joint
+
+        Returns
+        -------
+        dict of tuple to float
+            By names such as ("angle", joint).
+        """
         result: dict[Name, float | Array] = {}
         for name in _declared.declared(self):
             result |= _declared.spread(joint.name, name, getattr(self, name))
         return result
 
     def begin(self, joint: Joint, values: Values, count: int) -> tuple[Array, Array]:
-        """Coordinates (count, c) and speeds (count, s) at takeoff."""
+        """Coordinates and speeds at takeoff.
+
+        Parameters
+        ----------
+        joint : Joint
+        values : mapping of tuple to float or ndarray, (count,)
+            The numbers of the flights.
+        count : int
+            How many flights.
+
+        Returns
+        -------
+        q : ndarray, (count, coordinates)
+        u : ndarray, (count, speeds)
+        """
         raise NotImplementedError
 
     def lasting(self, joint: Joint, values: Values, q: Array) -> Array:
-        """Parameters that stay as they are, (count, parameters); q (count, c) as at takeoff."""
+        """Values of `parameters`.
+
+        Parameters
+        ----------
+        joint, values
+            As for `begin`.
+        q : ndarray, (count, coordinates)
+            Its coordinates at takeoff.
+
+        Returns
+        -------
+        ndarray, (count, parameters)
+        """
         names: list[Name] = [(name, joint.name) for name in self.parameters(joint)]
         return _declared.side_by_side(values, names, len(q))
 
     def paths(self, joint: Joint, values: Values, count: int) -> tuple[Path, ...]:
-        """Its paths, for each flight or one for all where they are alike."""
+        """Its paths.
+
+        Parameters
+        ----------
+        joint, values, count
+            As for `begin`.
+
+        Returns
+        -------
+        tuple of Path
+            Each for all flights where they are alike, otherwise with one row for each.
+        """
         return ()
 
     def sound(self, joint: Joint, values: Values, count: int) -> Array:
-        """Whether each flight's numbers could be asked for, (count,)."""
+        """Whether the numbers of each flight are such as could be asked for by themselves.
+
+        Parameters
+        ----------
+        joint, values, count
+            As for `begin`.
+
+        Returns
+        -------
+        ndarray of bool, (count,)
+        """
         good = np.ones(count, bool)
         known = _declared.declared(self)
         for key in self.numbers(joint):
             what, value = known[str(key[0])], np.asarray(values[key])
             if what.limited and joint.kind != "ball":
-                good &= _within(joint, value)
+                good &= within(joint, value)
             if what.least is not None:
                 good &= value >= what.least
         return good
@@ -304,7 +368,12 @@ class JointTakeoff(metaclass=_Registry):
     # ---------------------------------------------------------------------- what it amounts to
 
     def nominal(self) -> JointTakeoff:
-        """What it does in the flight whose torques a motor tape records."""
+        """What it does in the flight whose torques a motor tape records.
+
+        Returns
+        -------
+        JointTakeoff
+        """
         return self
 
     @property
@@ -313,73 +382,17 @@ class JointTakeoff(metaclass=_Registry):
         return True
 
     def energy(self, joint: Joint, q: Array) -> Array | float:
-        """What it holds at coordinates q (…, c), J."""
+        """The energy that it holds.
+
+        Parameters
+        ----------
+        joint : Joint
+        q : ndarray, (…, coordinates)
+            Its coordinates.
+
+        Returns
+        -------
+        ndarray, (…), or float
+            J.
+        """
         return 0.0
-
-
-@dataclass(frozen=True)
-class JointPlan:
-    """A joint and what it does, everything filled in."""
-
-    joint: Joint
-    does: JointTakeoff
-
-
-def kinds(plans: tuple[JointPlan, ...]) -> tuple[JointTakeoff, ...]:
-    """What each joint does, without numbers: flights that do the same share their equations."""
-    return tuple(plan.does.kind() for plan in plans)
-
-
-def check_limits(joint: Joint, angles: tuple[float, ...]) -> None:
-    """SomersaultError where angles are outside a joint's limits."""
-    if joint.limits is None or not angles:
-        return
-    least, most = joint.limits
-    low, high = min(angles), max(angles)
-    if low < least - LIMIT_SLACK or high > most + LIMIT_SLACK:
-        worst = low if low < least - LIMIT_SLACK else high
-        raise SomersaultError(
-            f"joint {joint.name}: angle {worst:g} is outside its limits {least:g} to {most:g}"
-        )
-
-
-def _within(joint: Joint, angle: Array) -> Array:
-    if joint.limits is None:
-        return np.isfinite(angle)
-    least, most = joint.limits
-    return (angle >= least - LIMIT_SLACK) & (angle <= most + LIMIT_SLACK)
-
-
-def _class(motion: Any) -> type[JointTakeoff]:
-    if motion is None:
-        return _Registry.classes["as modelled"]
-    if not isinstance(motion, str) or motion not in _names():
-        raise SomersaultError(f"{motion!r} is no motion of a joint; use {_listed(_names())}")
-    return _Registry.classes[motion]
-
-
-def _names() -> list[str]:
-    return [name for name in _Registry.classes if name is not None and name != "as modelled"]
-
-
-def _every_key() -> set[str]:
-    return {key for cls in _Registry.classes.values() for key in cls._keys()}
-
-
-def _nothing(value: Any) -> bool:
-    """Whether a value is as good as none."""
-    try:
-        return value is None or value is False or bool(np.all(np.asarray(value) == 0))
-    except (TypeError, ValueError):
-        return False
-
-
-def _refusal(cls: Any, key: str) -> str:
-    takes = f"it takes {_listed(cls._keys())}" if cls._keys() else "it takes nothing"
-    if key in _every_key():
-        return f"{key} would do nothing for a joint that is {cls._called()}; leave it out ({takes})"
-    return f"{key} is nothing that a joint has; one that is {cls._called()} takes {takes[9:]}"
-
-
-def _listed(names: list[str]) -> str:
-    return ", ".join(names)

@@ -7,7 +7,8 @@ from typing import Any
 
 from somersault._core.errors import SomersaultError
 from somersault.flight.behaviours import _declared
-from somersault.flight.behaviours._behaviour import Here, JointTakeoff
+from somersault.flight.behaviours._behaviour import JointTakeoff
+from somersault.flight.behaviours._here import Here
 from somersault.flight.behaviours._moving import Stopped
 from somersault.flight.behaviours._prescribed import OnPath, along
 from somersault.model import Joint
@@ -46,5 +47,17 @@ class Compliant(OnPath, Stopped, motion="compliant"):
 
 
 def softened(one: OnPath, **numbers: Any) -> Compliant:
-    """A joint that is compliant about the path that another follows exactly."""
+    """A joint that is compliant about the path that another follows exactly.
+
+    Parameters
+    ----------
+    one : OnPath
+        The other.
+    **numbers
+        Fields of `Compliant`: stiffness, damping …
+
+    Returns
+    -------
+    Compliant
+    """
     return replace(Compliant(), times=one.times, angles=one.angles, path=one.path, **numbers)

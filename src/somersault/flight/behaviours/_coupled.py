@@ -10,7 +10,9 @@ from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.dynamics import spring_torques
 from somersault.flight.behaviours import _declared
-from somersault.flight.behaviours._behaviour import Here, JointPlan, JointTakeoff, Known
+from somersault.flight.behaviours._behaviour import JointTakeoff
+from somersault.flight.behaviours._here import Here, Known
+from somersault.flight.behaviours._plan import JointPlan
 from somersault.model import Joint, Model, mirror_images
 
 
@@ -86,7 +88,18 @@ class Coupled(JointTakeoff, motion="coupled"):
 
 
 def check_coupled(model: Model, plans: tuple[JointPlan, ...]) -> None:
-    """SomersaultError, by both names, for joints that cannot be coupled."""
+    """Check that joints which follow others can do so.
+
+    Parameters
+    ----------
+    model : Model
+    plans : tuple of JointPlan
+
+    Raises
+    ------
+    SomersaultError
+        Naming both joints, where they cannot be coupled.
+    """
     does: Mapping[str, JointPlan] = {plan.joint.name: plan for plan in plans}
     for plan in plans:
         if not isinstance(plan.does, Coupled):
@@ -105,5 +118,14 @@ def check_coupled(model: Model, plans: tuple[JointPlan, ...]) -> None:
 
 
 def leaders(plans: tuple[JointPlan, ...]) -> dict[str, str]:
-    """The leader of each joint that follows one."""
+    """The leader of each joint that follows one.
+
+    Parameters
+    ----------
+    plans : tuple of JointPlan
+
+    Returns
+    -------
+    dict of str to str
+    """
     return {p.joint.name: p.does.leader for p in plans if isinstance(p.does, Coupled)}

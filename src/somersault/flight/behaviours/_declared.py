@@ -49,9 +49,25 @@ def quantity(
     limited: bool = False,
     kw_only: bool = True,
 ) -> Any:
-    """A field that is a number in `unit` (`slide_unit` for a slide), or a row of them.
+    """Declare a field that is a number, or a row of numbers.
 
-    The arguments are those of `Quantity`; `default` is what the field has where nothing is given.
+    Parameters
+    ----------
+    unit, slide_unit : str
+        Of a hinge, and of a slide where that is another.
+    default
+        What the field has where nothing is given.
+    image : {"same", "turned", "angle"}
+    row : bool
+    least : float, optional
+    limited : bool
+        As in `Quantity`.
+    kw_only : bool
+        Whether it is given by name only.
+
+    Returns
+    -------
+    dataclasses.Field
     """
     declared = Quantity(unit, slide_unit or unit, image, row, least, limited)
     return field(default=default, kw_only=kw_only, metadata={_KEY: declared})
@@ -88,7 +104,16 @@ def torque(**options: Any) -> Any:
 
 
 def declared(kind: Any) -> dict[str, Quantity]:
-    """The quantities of a behaviour, or of its class, by name."""
+    """The quantities that a behaviour declares.
+
+    Parameters
+    ----------
+    kind : JointTakeoff, or its class
+
+    Returns
+    -------
+    dict of str to Quantity
+    """
     return {f.name: f.metadata[_KEY] for f in fields(kind) if _KEY in f.metadata}
 
 
@@ -126,7 +151,21 @@ def spread(joint: str, name: str, value: Any) -> dict[Name, float]:
 
 
 def side_by_side(values: Values, names: list[Name], count: int) -> Array:
-    """The numbers of these names, (count, names)."""
+    """Some of the numbers of many flights as the columns of an array.
+
+    Parameters
+    ----------
+    values : mapping of tuple to float or ndarray, (count,)
+        The numbers of the flights.
+    names : list of tuple
+        Those that are wanted.
+    count : int
+        How many flights.
+
+    Returns
+    -------
+    ndarray, (count, names)
+    """
     result = np.empty((count, len(names)))
     for k, name in enumerate(names):
         result[:, k] = values[name]

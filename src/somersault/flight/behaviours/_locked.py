@@ -8,7 +8,8 @@ from typing import Any
 from somersault._core.array import Array
 from somersault.flight._values import Values
 from somersault.flight.behaviours import _declared
-from somersault.flight.behaviours._behaviour import Angle, Here, JointTakeoff, Known
+from somersault.flight.behaviours._behaviour import Angle, JointTakeoff
+from somersault.flight.behaviours._here import Here, Known
 from somersault.flight.behaviours._moving import standing, takeoff_angle
 from somersault.model import Joint
 

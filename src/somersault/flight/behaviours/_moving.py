@@ -13,7 +13,9 @@ from somersault._core.errors import SomersaultError
 from somersault.dynamics import spring_torques
 from somersault.flight._values import Name, Values
 from somersault.flight.behaviours import _declared
-from somersault.flight.behaviours._behaviour import Angle, Here, JointTakeoff, check_limits
+from somersault.flight.behaviours._behaviour import Angle, JointTakeoff
+from somersault.flight.behaviours._here import Here
+from somersault.flight.behaviours._limits import check_limits
 from somersault.model import Joint
 
 _STOPS = ("stop_stiffness", "stop_damping")
@@ -65,8 +67,17 @@ class Stopped(JointTakeoff):
         return [load + _stop(here) for load in acting] if self.stopped else acting
 
     def acting(self, here: Here) -> list[Any]:
-        """What acts at each of its speeds but for stops, N m: the one thing that a freely moving
-        behaviour must say."""
+        """What acts at each of its speeds, but for stops: all that such a behaviour must say.
+
+        Parameters
+        ----------
+        here : Here
+
+        Returns
+        -------
+        list
+            N m (N for a slide), symbols.
+        """
         raise NotImplementedError
 
     @property
@@ -100,7 +111,16 @@ class Moving(Stopped):
         return (*self.springs(joint), "damping", "pretension", *super().parameters(joint))
 
     def springs(self, joint: Joint) -> tuple[str, ...]:
-        """Names of the parameters of its spring."""
+        """Names of the parameters of its spring.
+
+        Parameters
+        ----------
+        joint : Joint
+
+        Returns
+        -------
+        tuple of str
+        """
         return ()
 
     def numbers(self, joint: Joint) -> dict[Name, float | Array]:

@@ -12,7 +12,9 @@ from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.flight._values import Values
 from somersault.flight.behaviours import _declared
-from somersault.flight.behaviours._behaviour import Here, JointTakeoff, Known, check_limits
+from somersault.flight.behaviours._behaviour import JointTakeoff
+from somersault.flight.behaviours._here import Here, Known
+from somersault.flight.behaviours._limits import check_limits
 from somersault.flight.behaviours._rows import in_order, sampled
 from somersault.model import Joint
 from somersault.motion import Path, check_rows, moves, polynomial
@@ -61,7 +63,12 @@ class OnPath(JointTakeoff):
         return (moves(*sampled(joint, "angles", len(self.times), values, count)),)
 
     def whole(self) -> Path:
-        """Its path, of one flight."""
+        """Its path, of one flight.
+
+        Returns
+        -------
+        Path
+        """
         return self.path or moves(np.array(self.times), np.array(self.angles))
 
     def begin(self, joint: Joint, values: Values, count: int) -> tuple[Array, Array]:

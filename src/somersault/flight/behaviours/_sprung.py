@@ -55,8 +55,19 @@ class Sprung(Moving, motion="sprung"):
         return replace(plan, stiffness=stiffness, rest=rest)
 
     def scaled(self, stiffness: float, damping: float) -> Sprung:
-        """The same with the dimensions of its `K` and `B`: multiples of a stiffness Ω² I and a
-        damping Ω I."""
+        """The same with its spring and damper in SI units, where they are given as `K` and `B`.
+
+        Parameters
+        ----------
+        stiffness : float
+            Ω² I, of which K is a multiple, N m/rad.
+        damping : float
+            Ω I, of which B is a multiple, N m s/rad.
+
+        Returns
+        -------
+        Sprung
+        """
         k = self.stiffness if self.K is None else self.K * stiffness
         b = self.damping if self.B is None else self.B * damping
         return replace(self, stiffness=k, damping=b, K=None, B=None)

@@ -13,7 +13,8 @@ from somersault._core.checks import one_of
 from somersault._core.errors import SomersaultError
 from somersault.flight._values import Values
 from somersault.flight.behaviours import _declared
-from somersault.flight.behaviours._behaviour import Here, JointTakeoff
+from somersault.flight.behaviours._behaviour import JointTakeoff
+from somersault.flight.behaviours._here import Here
 from somersault.flight.behaviours._moving import Moving
 from somersault.flight.behaviours._rows import in_order, sampled
 from somersault.model import Joint
