@@ -82,6 +82,14 @@ class Filmed:
             A .html file.
         title : str, optional
             The heading; the model's name, if it is not given.
+
+        Examples
+        --------
+        >>> from tempfile import TemporaryDirectory
+        >>> import somersault as so
+        >>> flight = so.fly("furrer", so.Takeoff(spin=8.6, tilt=0.05), 0.1)
+        >>> with TemporaryDirectory() as folder:
+        ...     flight.page(f"{folder}/layout.html")
         """
         page(self, path, title=title)  # type: ignore[arg-type]
 
