@@ -9,6 +9,8 @@ from types import ModuleType
 
 import pytest
 
+import somersault
+
 DOCS = Path(__file__).parents[1] / "docs"
 QUICK = ("extending", "flight", "models", "motions", "maneuvers", "doll")
 SLOW = ("ensembles", "seeing", "stability", "twisting")
@@ -28,3 +30,14 @@ def test_the_code_of_a_page_runs(
     assert blocks
     for number, block in enumerate(blocks, 1):
         exec(compile(block, f"{page}.md, block {number}", "exec"), module.__dict__)
+
+
+def test_every_room_has_a_page_of_reference() -> None:
+    pages = (DOCS / "reference").glob("*.md")
+    shown = {line for page in pages for line in page.read_text(encoding="utf-8").splitlines()}
+    rooms = [
+        name for name in somersault.__all__ if isinstance(getattr(somersault, name), ModuleType)
+    ]
+    assert rooms
+    for room in rooms:
+        assert f"::: somersault.{room}" in shown

@@ -35,15 +35,15 @@ class JointTakeoff(metaclass=Registry):
 
     `JointTakeoff.NAME(…)`, or `JointTakeoff("NAME", …)`, is a joint that does so:
 
-    ========== ==========================================================================
-    locked     holds its angle
-    free       swings, with its damper
-    sprung     has a spring and a damper, and may be pretensioned to balance the spin
-    prescribed moves along a path, whatever it takes
-    compliant  has a spring and a damper about a path, and the torque of a motor tape
-    torque     is driven by a torque against time, with or without a spring and a damper
-    coupled    follows another joint, as gears make it
-    ========== ==========================================================================
+    | name       | what the joint does                                              |
+    |------------|------------------------------------------------------------------|
+    | locked     | holds its angle                                                  |
+    | free       | swings, with its damper                                          |
+    | sprung     | has a spring and a damper; may be pretensioned against the spin  |
+    | prescribed | moves along a path, whatever it takes                            |
+    | compliant  | has a spring and a damper about a path, and a motor tape         |
+    | torque     | is driven by a torque against time; may have spring and damper   |
+    | coupled    | follows another joint, as gears make it                          |
 
     Without a name a joint does what the model says: it follows where it is geared to another,
     is sprung where it has stiffness or is given some, and is locked otherwise. Angles are in rad (m
