@@ -60,6 +60,11 @@ def run(chosen: argparse.Namespace) -> None:
     if chosen.out is not None:
         check_picture("--out", chosen.out)
     model = load(chosen.model)
+    if model.plane is not None:
+        raise SomersaultError(
+            f"{model.name} moves in a plane, so its map is one point; a map is of bodies that turn "
+            "in space"
+        )
     steady = spin(model, 2, assignments("--pose", chosen.pose))
     inertias = steady.principal_inertias
     pose = dict(zip(model.coordinates, steady.pose.tolist(), strict=True))

@@ -55,6 +55,7 @@ def _record(name: str) -> dict[str, Any]:
         "mass": model.mass,
         "principal_inertias": principal_inertias(model).tolist() if model.free else None,
         "free": model.free,
+        "plane": model.plane,
         "joints": list(model.speeds),
         "bodies": _bodies(model),
         "joint_details": [
@@ -122,8 +123,13 @@ def _inertias(record: dict[str, Any]) -> str:
 def _page(record: dict[str, Any]) -> list[str]:
     """All that was understood of one model."""
     base = "free in the air" if record["free"] else "its base fixed to the ground"
+    if record["plane"] is not None:
+        base = f"free in the plane across its axis {record['plane']}"
     lines = [f"{record['name']}: {record['mass']:.6g} kg, {base}"]
-    if record["free"]:
+    if record["plane"] is not None:
+        inertia = record["principal_inertias"][record["plane"] - 1]
+        lines.append(f"  inertia about that axis: {inertia:.4g} kg m²")
+    elif record["free"]:
         lines.append(f"  principal inertias 1, 2, 3: {_inertias(record)} kg m²")
     lines += _indented(
         ("body", "on", "mass kg", "mass and inertia from"),

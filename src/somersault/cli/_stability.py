@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -29,9 +30,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("model", metavar="MODEL", help="a shipped model's name or a model file")
     parser.add_argument(
         "--axis",
-        default="2",
         help="minor, intermediate, major, or 1, 2, 3: the principal axis nearest that body "
-        "axis (default 2, the somersault)",
+        "axis (default 2, the somersault; of a planar model the axis across its plane)",
     )
     for option, what in (
         ("--pose", "joint angles in rad (m for slides); the rest stand as the file draws them"),
@@ -63,7 +63,7 @@ def run(chosen: argparse.Namespace) -> None:
     from somersault.stability import spin
 
     steady = spin(chosen.model, chosen.axis, assignments("--pose", chosen.pose))
-    model = steady.model
+    model, axis = steady.model, chosen.axis or str(steady.axis)
     if chosen.rate is None and any(j.stiffness or j.damping for j in model.joints):
         print(
             f"note: the springs and dampers that {model.name} has of its own are left out; "
@@ -77,9 +77,9 @@ def run(chosen: argparse.Namespace) -> None:
         chosen.rate,
     )
     if chosen.json:
-        print(json.dumps(_record(system, chosen.axis)))
+        print(json.dumps(_record(system, axis)))
     else:
-        print("\n".join(_page(system, chosen.axis)))
+        print("\n".join(_page(system, axis)))
 
 
 def _record(system: LinearSpin, axis: str) -> dict[str, Any]:
@@ -90,7 +90,10 @@ def _record(system: LinearSpin, axis: str) -> dict[str, Any]:
         "axis": axis,
         "pose": pose,
         "principal_inertias": steady.principal_inertias.tolist(),
-        "inertia_ratios": steady.inertia_ratios,
+        "inertia_ratios": {
+            name: None if math.isnan(ratio) else ratio
+            for name, ratio in steady.inertia_ratios.items()
+        },
         "coordinates": list(system.coordinates),
         "M": system.M.tolist(),
         "G": system.G.tolist(),
@@ -130,12 +133,19 @@ def _page(system: LinearSpin, axis: str) -> list[str]:
     steady = system.spin
     ratios = steady.inertia_ratios
     verdict = "stable" if system.stable else "unstable"
+    about, inertias = _axis(axis, steady.axis), steady.principal_inertias.tolist()
+    said = (
+        f"principal inertias {_numbers(inertias)} kg m²,"
+        f" k1 {ratios['k1']:.3f}, k3 {ratios['k3']:.3f}"
+    )
+    if steady.model.plane is not None:
+        about = f"axis {steady.axis}, across its plane"
+        said = f"inertia {inertias[steady.axis - 1]:.4g} kg m²"
     lines = [
-        f"{steady.model.name}, spinning about its {_axis(axis, steady.axis)}: {verdict}",
+        f"{steady.model.name}, spinning about its {about}: {verdict}",
         f"  {system.growth_in_words}",
         f"  energy: {system.energy_signature}, {_why(system)}",
-        f"  principal inertias {_numbers(steady.principal_inertias.tolist())} kg m²,"
-        f" k1 {ratios['k1']:.3f}, k3 {ratios['k3']:.3f}",
+        f"  {said}",
     ]
     if steady.holding_torques:
         held = ", ".join(f"{name} {value:.4g}" for name, value in steady.holding_torques.items())

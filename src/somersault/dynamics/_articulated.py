@@ -79,7 +79,8 @@ def forward_dynamics(
     q : sequence
         Joint coordinates.
     omega : vector
-        Angular velocity of the base, rad/s.
+        Angular velocity of the base, rad/s; what of it would turn a base out of its plane counts
+        as zero.
     speeds : sequence
         Joint speeds.
     torques : sequence
@@ -94,11 +95,12 @@ def forward_dynamics(
     -------
     alpha, a : vector
         Angular acceleration of a free base, rad/s², and acceleration of its own centre of mass,
-        m/s²; zero for a fixed base.
+        m/s²; zero for a fixed base, and out of its plane for a planar one.
     accelerations : list
         Of the joint speeds.
     """
     driven = driven or {}
+    omega = tree.kept(omega)
     placed = placements(tree, q)
     moving = [
         _driven(link, motion, driven)
@@ -285,7 +287,7 @@ def _accelerations(
     base_a: Vec = against
     for index, (link, at, motion) in enumerate(zip(tree.links, placed, moving, strict=True)):
         if link.joint is None:
-            base_alpha, base_a = _freed(bodies[index])
+            base_alpha, base_a = _freed(bodies[index], tree.ways, against)
             alphas.append(base_alpha)
             accelerations.append(base_a)
             continue
@@ -309,11 +311,21 @@ def _accelerations(
     return base_alpha, vsub(base_a, against) if tree.free else [0.0] * 3, joints
 
 
-def _freed(base: _Articulated) -> tuple[Vec, Vec]:
-    """α and a of a base that nothing holds: [I H; Hᵀ M] (α, a) = −(n, f)."""
+def _freed(base: _Articulated, ways: Sequence[int], held: Vec) -> tuple[Vec, Vec]:
+    """α and a of a base that nothing holds in its ways: [I H; Hᵀ M] (α, a) = −(n, f).
+
+    Where it has no way α is zero and a that of `held`.
+    """
     whole = [
         *([*base.mass[i], *[base.coupling[j][i] for j in range(3)]] for i in range(3)),
         *([*base.coupling[i], *base.moment[i]] for i in range(3)),
     ]
-    (solution,) = solve_symmetric(whole, [scale(-1.0, [*base.f, *base.n])])
-    return solution[3:], solution[:3]
+    moving = [k for k in range(6) if (k + 3) % 6 in ways]  # here a stands before α
+    result = [0.0 if k in moving else x for k, x in enumerate([*held, 0.0, 0.0, 0.0])]
+    load = vadd([*base.f, *base.n], matvec(whole, result))
+    (solution,) = solve_symmetric(
+        [[whole[i][j] for j in moving] for i in moving], [[mul(-1.0, load[k]) for k in moving]]
+    )
+    for k, value in zip(moving, solution, strict=True):
+        result[k] = value
+    return result[3:], result[:3]

@@ -45,8 +45,9 @@ def constrained_dynamics(
         (α, a, joint accelerations), in the base's axes; for a fixed base α and a are zero.
     """
     ahead = 6 if tree.free else 0
+    omega = tree.kept(omega)
     known: list[Scalar] = [0.0] * len(speeds)
-    moved: dict[int, list[tuple[int, Scalar]]] = {k: [(k, 1.0)] for k in range(ahead)}
+    moved: dict[int, list[tuple[int, Scalar]]] = {k: [(k, 1.0)] for k in tree.ways}
     for k in range(len(speeds)):
         if k in driven:
             known[k] = driven[k]

@@ -23,7 +23,9 @@ class Equations(SymbolicEquations):
     Speeds are ordered (ω, v, q̇): angular velocity of a free base in its own axes, velocity of its
     frame's origin in the same axes, joint speeds; without a free base only the joints'. The
     accelerations that belong to them are those of the base's frame in inertial space, written in
-    the base's axes.
+    the base's axes. A planar model has all of these speeds too: its forward dynamics take no notice
+    of those out of its plane, and give zero for their accelerations; the other quantities are those
+    of the same model free in space.
 
     Arguments of the methods are arrays whose leading dimensions broadcast; results have those
     dimensions in front. Each quantity is derived and compiled when it is first asked for.

@@ -3,7 +3,8 @@
 Speeds are ordered (ω, v, q̇): angular velocity of a free base in its own axes, velocity of
 its frame's origin in the same axes, joint speeds; without a free base only the joints'. The
 accelerations that belong to them are those of the base's frame in inertial space, written in
-the base's axes, so that neither attitude nor linear velocity enters the dynamics.
+the base's axes, so that neither attitude nor linear velocity enters the dynamics. A planar model
+has the same speeds; forward dynamics hold it in its plane.
 """
 
 from __future__ import annotations
@@ -202,6 +203,7 @@ class SymbolicEquations:
         torques = ca.SX.sym("torques", len(self.model.speeds))
         gravity = ca.SX.sym("gravity", 3)
         omega, _, speeds = self._split(self._v)
+        omega = self.tree.kept(omega)
         loads = vadd(self._passive(speeds), [torques[k] for k in range(torques.numel())])
         alpha, a, joints = forward_dynamics(
             self.tree, self._coordinates(), omega, speeds, loads, [gravity[k] for k in range(3)]

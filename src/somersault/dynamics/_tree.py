@@ -45,12 +45,21 @@ class Link:
 @dataclass(frozen=True)
 class Tree:
     """The links, parents first; with a free base, link 0 is it and stands `base_com` from
-    the base body's own origin, (3,) in its axes."""
+    the base body's own origin, (3,) in its axes, and moves in the `ways` of `Model.base_ways`."""
 
     links: tuple[Link, ...]
-    free: bool
+    ways: tuple[int, ...]
     base_com: Vec
     mass: Scalar
+
+    @property
+    def free(self) -> bool:
+        """Whether link 0 is a free base."""
+        return bool(self.ways)
+
+    def kept(self, turn: Vec) -> Vec:
+        """The part of a turn (or turning, of the base) that the base has a way for."""
+        return [x if k in self.ways else 0.0 for k, x in enumerate(turn)]
 
 
 Symbols = Mapping[str, Any]
@@ -94,7 +103,7 @@ def link_tree(model: Model, symbols: Symbols | None = None) -> Tree:
             links.append(link)
             rotation, place = np.eye(3), _zero()
         stands.append(on)
-    return Tree(tuple(links), model.free, base_com, sum(masses[1:], masses[0]))
+    return Tree(tuple(links), model.base_ways, base_com, sum(masses[1:], masses[0]))
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from somersault._core.array import Array
 from somersault.dynamics import parameter_values
 from somersault.engine import MOST_STEPS, Solution
 from somersault.flight._course import Course
+from somersault.flight._plane import check_in_plane
 from somersault.flight._plans import numbers, plans, sound
 from somersault.flight._start import Start, Starts, start, starts
 from somersault.flight._system import System, system
@@ -46,6 +47,9 @@ class Batch:
     until: str | None = None
     bodies: tuple[str, ...] = ()
     extremes: tuple[str, ...] | None = None
+
+    def __post_init__(self) -> None:
+        check_in_plane(self.model, self.takeoff, self.until)
 
     @cached_property
     def joints(self) -> tuple[JointPlan, ...]:

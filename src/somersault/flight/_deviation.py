@@ -14,6 +14,7 @@ from somersault._core.numbers import number
 from somersault.attitude import quaternion_from_matrix, quaternion_product
 from somersault.flight._flight import Flight
 from somersault.flight._fly import fly
+from somersault.flight._plane import refuse_out_of_plane
 from somersault.flight._takeoff import Takeoff
 from somersault.flight.behaviours import Free, JointTakeoff, Locked, Sprung
 from somersault.model import Joint, pose, spread
@@ -83,6 +84,7 @@ def deviated_flight(
     deviation = np.empty(3)
     for axis, (name, turn) in zip(model.axes, turns.items(), strict=True):
         deviation[axis - 1] = number(name, turn)
+        refuse_out_of_plane(model, name, name, turn)
     springs = spread(model, by_name("stiffness", stiffness), mirrored=False)
     dampers = spread(model, by_name("damping", damping), mirrored=False)
     locked = {model.speeds[place] for place in locked_speeds(model, lock)}

@@ -14,6 +14,7 @@ from somersault._core.datasets import save_history
 from somersault.attitude import matrix_from_quaternion, unwrapped_angles
 from somersault.flight._ballistic import BallisticPath
 from somersault.flight._course import Course
+from somersault.flight._plane import kept
 from somersault.flight._start import Start
 from somersault.flight._system import System
 from somersault.history import summary
@@ -74,7 +75,8 @@ class Flight(Filmed):
     steps : int
         Steps of the integration.
     momentum_drift, energy_drift : float
-        Largest relative change of the angular momentum, and of the energy where it is kept.
+        Largest relative change of the angular momentum (of a planar model: about the axis across
+        its plane), and of the energy where it is kept.
 
     Examples
     --------
@@ -130,8 +132,17 @@ class Flight(Filmed):
 
     @cached_property
     def centre_of_mass(self) -> Array:
-        """Of the whole body in inertial axes, (time, 3), m."""
-        return self.ballistic_path.at(self.times)
+        """Of the whole body in inertial axes, (time, 3), m.
+
+        It falls; across the plane of a planar model it goes with what moves there, as the base
+        stays in the plane.
+        """
+        path = self.ballistic_path.at(self.times)
+        if self.model.plane is not None:
+            across = self.model.plane - 1
+            of_pose = centre_of_mass(self.model, self.joint_coordinates)[:, across]
+            path[:, across] += of_pose - centre_of_mass(self.model, self.start.q)[across]
+        return path
 
     @property
     def ballistic_path(self) -> BallisticPath:
@@ -190,16 +201,18 @@ class Flight(Filmed):
     @property
     def external_moment(self) -> Array:
         """What the motion would need from outside, about the base's centre of mass and in body
-        axes, (time, 3), N m: zero, but for rounding."""
+        axes, (time, 3), N m: zero, but for rounding, unless something holds the base in a plane."""
         return self._loads[:, :3]
 
     @cached_property
     def _speeds(self) -> Array:
-        """(ω, velocity of the base with the centre of mass at rest, joint speeds)."""
+        """(ω, velocity of the base with the centre of mass at rest, joint speeds); a base in a
+        plane does not move across it."""
         q, u = self._joints
         still = np.concatenate([self.angular_velocity, np.zeros((len(u), 3)), u], 1)
         linear = self.system.equations.momentum(q, still)[:, 3:]
-        still[:, 3:6] = -linear / self.model.mass
+        shifts = [way for way in self.model.base_ways if way >= 3]
+        still[:, shifts] = (-linear / self.model.mass)[:, [way - 3 for way in shifts]]
         return still
 
     @cached_property
@@ -247,7 +260,7 @@ class Flight(Filmed):
     @property
     def momentum_drift(self) -> float:
         """Largest change of angular momentum, over its size (kg m²/s where that is zero)."""
-        h = self.angular_momentum
+        h = kept(self.model, self.angular_momentum)
         size = float(np.linalg.norm(h[0]))
         return float(np.linalg.norm(h - h[0], axis=1).max() / (size or 1.0))
 

@@ -9,6 +9,7 @@ from somersault.attitude import Axes, angles_from_quaternion
 from somersault.engine import STATUS
 from somersault.flight._batch import Batch
 from somersault.flight._flight import Flight
+from somersault.flight._plane import turning
 from somersault.flight._start import Start
 from somersault.flight._system import System
 
@@ -51,7 +52,8 @@ def flown(batch: Batch, times: Array, gravity: Array, accuracy: float, steps: in
 
 def _first_points(chosen: System, begun: Start, points: Array) -> Array:
     """The points with more between them where the body turns far, by its rate at takeoff."""
-    least = np.linalg.eigvalsh(chosen.equations.inertia(begun.q))[0]
+    ways = turning(chosen.model)
+    least = np.linalg.eigvalsh(chosen.equations.inertia(begun.q)[np.ix_(ways, ways)])[0]
     fastest = np.linalg.norm(begun.momentum) / least + np.abs(begun.u).sum()
     parts = np.ceil(np.diff(points) * fastest / _FINEST_TURN)
     return np.append(

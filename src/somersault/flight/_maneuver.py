@@ -20,6 +20,7 @@ from somersault.flight._batch import Batch
 from somersault.flight._broken import BROKEN, why_broken
 from somersault.flight._flight import Flight
 from somersault.flight._flown import flown
+from somersault.flight._plane import refuse_out_of_plane
 from somersault.flight._prescribed import prescribed
 from somersault.flight._spec import parsed, tables
 from somersault.flight._takeoff import Takeoff, require_takeoff
@@ -91,6 +92,7 @@ class Maneuver(Variants):
         require_takeoff(self.takeoff)
         object.__setattr__(self, "duration", flight_time(self.duration))
         numbers("gravity", self.gravity, 3)
+        refuse_out_of_plane(self.model, "gravity", "gravity", self.gravity)
         check_limits_of_flight(self.accuracy, self.until, self.steps)
 
     @classmethod

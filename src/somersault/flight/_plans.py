@@ -10,6 +10,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.dynamics import Equations, body_kind
+from somersault.flight._plane import kept
 from somersault.flight._takeoff import Takeoff
 from somersault.flight._values import Name
 from somersault.flight.behaviours import (
@@ -122,4 +123,4 @@ def _spin_rate(model: Model, takeoff: Takeoff, q: Array, u: Array) -> float:
         omega = np.zeros(3) if takeoff.angular_velocity is None else takeoff.angular_velocity
         h = Equations(model).momentum(q, np.concatenate([omega, np.zeros(3), u]))[:3]
     inertia, _ = holding_torques(model, q[None], (), np.empty((1, 0)), compiled=False)
-    return float(np.linalg.norm(h) / inertia[0])
+    return float(np.linalg.norm(kept(model, h)) / inertia[0])

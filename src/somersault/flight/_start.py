@@ -9,16 +9,17 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.attitude import (
-    Axes,
     angles_from_quaternion,
     body_rates,
     matrix_from_quaternion,
     quaternion_from_angles,
 )
+from somersault.flight._plane import kept, turning
 from somersault.flight._system import System
 from somersault.flight._takeoff import Takeoff
 from somersault.flight._values import Name, Values
 from somersault.flight.behaviours import JointPlan, Sprung, begin, side_by_side
+from somersault.model import Model
 from somersault.stability import holding_torques
 
 
@@ -80,17 +81,21 @@ def starts(
     system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...], values: Values, count: int
 ) -> Starts:
     """Attitude, spin and pretension of `count` flights whose numbers are `values`."""
-    quaternion, angles = _attitude(takeoff, values, count, system.model.axes)
+    quaternion, angles = _attitude(takeoff, values, count, system.model)
     q, u = begin(plans, values, count)
     bodies = side_by_side(values, [(name,) for name in system.bodies], count)
     if ("angular_velocity", 1) in values:
         omega = side_by_side(values, [("angular_velocity", k) for k in (1, 2, 3)], count)
+        omega = kept(system.model, omega)
     elif ("angular_momentum", 1) in values:
         of_joints = system.equations.momentum(q, _speeds(np.zeros((count, 3)), u), bodies)[:, :3]
         h = side_by_side(values, [("angular_momentum", k) for k in (1, 2, 3)], count)
         to_body = np.swapaxes(matrix_from_quaternion(quaternion), 1, 2)
         wanted = _turned(to_body, h) - of_joints
-        omega = np.linalg.solve(system.equations.inertia(q, bodies), wanted[..., None])[..., 0]
+        ways = turning(system.model)
+        inertia = system.equations.inertia(q, bodies)[:, ways][:, :, ways]
+        omega = np.zeros((count, 3))
+        omega[:, ways] = np.linalg.solve(inertia, wanted[:, ways, None])[..., 0]
     else:
         names: list[Name] = [("takeoff", n) for n in ("spin", "tilt_rate", "twist_rate")]
         rates = side_by_side(values, names, count)
@@ -102,12 +107,13 @@ def starts(
 
 
 def momentum(system: System, begun: Starts) -> Array:
-    """Angular momentum at takeoff in inertial axes, (N, 3)."""
+    """Angular momentum at takeoff in inertial axes, (N, 3): what of it is kept in flight."""
     h = system.equations.momentum(begun.q, _speeds(begun.omega, begun.u), begun.bodies)[:, :3]
-    return _turned(matrix_from_quaternion(begun.quaternion), h)
+    return kept(system.model, _turned(matrix_from_quaternion(begun.quaternion), h))
 
 
-def _attitude(takeoff: Takeoff, values: Values, count: int, axes: Axes) -> tuple[Array, Array]:
+def _attitude(takeoff: Takeoff, values: Values, count: int, model: Model) -> tuple[Array, Array]:
+    axes = model.axes
     if takeoff.quaternion is None:
         names: list[Name] = [("takeoff", n) for n in ("somersault", "tilt", "twist")]
         somersault, tilt, twist = (values[name] for name in names)
@@ -115,6 +121,7 @@ def _attitude(takeoff: Takeoff, values: Values, count: int, axes: Axes) -> tuple
         return np.broadcast_to(quaternion, (count, 4)), side_by_side(values, names, count)
     given = np.asarray(takeoff.quaternion, float)
     given = given / np.abs(given).max()
+    given[1:] = kept(model, given[1:])
     given = given / np.linalg.norm(given)
     return np.tile(given, (count, 1)), np.tile(angles_from_quaternion(given, axes), (count, 1))
 

@@ -21,6 +21,7 @@ from somersault.dynamics import (
 )
 from somersault.dynamics.vectors import Vec, matvec, solve_symmetric, vsub
 from somersault.flight._layout import ATTITUDE, RATE, Layout, Slot, layout
+from somersault.flight._plane import turning
 from somersault.flight.behaviours import Coupled, Here, JointTakeoff, Known
 from somersault.model import Model
 from somersault.motion import polynomial
@@ -110,19 +111,22 @@ class Symbols:
     @cached_property
     def quaternion(self) -> list[Any]:
         """Attitude, body to inertial."""
-        return [self.y[k] for k in range(ATTITUDE)]
+        return [self.y[0], *self.tree.kept([self.y[1 + k] for k in range(3)])]
 
     @cached_property
     def omega(self) -> list[Any]:
         """Angular velocity in the base's axes."""
         if not self.layout.bound:
-            return [self.y[ATTITUDE + k] for k in range(RATE)]
+            return self.tree.kept([self.y[ATTITUDE + k] for k in range(RATE)])
         still: Vec = [0.0, 0.0, 0.0]
         of_joints = momentum(self.tree, self.position, still, still, self.rate).angular
         whole = composite_bodies(self.tree, placements(self.tree, self.position))[0].about_centre
         h = self._at(self.p, self.layout.momentum)
         left = vsub(_into_body(self.quaternion, h), of_joints)
-        return solve_symmetric(whole, [left])[0]
+        ways = turning(self.model)
+        part = [[whole[i][j] for j in ways] for i in ways]
+        rates = dict(zip(ways, solve_symmetric(part, [[left[k] for k in ways]])[0], strict=True))
+        return [rates.get(k, 0.0) for k in range(3)]
 
     @cached_property
     def position(self) -> list[Any]:

@@ -10,9 +10,10 @@ import numpy as np
 from somersault._core.errors import SomersaultError
 from somersault.dynamics import parameter_values
 from somersault.flight._batch import Batch
+from somersault.flight._plane import leaves_plane
 from somersault.flight.behaviours import Coupled, declared
 from somersault.model import Model, sides
-from somersault.simulation import Name, Numbers, Target
+from somersault.simulation import Name, Target
 
 _JOINT = re.compile(r"^joints\.(.+)\.([^\W\d]\w*)(?:\.(\d+))?$")
 _BODY = re.compile(r"^bodies\.(.+)\.(?:(mass)|(com|position)\.([123]))$")
@@ -33,7 +34,7 @@ def targets(batch: Batch, path: str) -> tuple[Target, ...]:
         For a name that is not there.
     """
     if match := _TAKEOFF.match(path):
-        return _of_takeoff(batch.values, path, *match.groups())
+        return _of_takeoff(batch, path, *match.groups())
     if match := _JOINT.match(path):
         return _of_joint(batch, path, *match.groups())
     if match := _BODY.match(path):
@@ -49,11 +50,17 @@ def body_names(names: Iterable[Name]) -> tuple[str, ...]:
     return tuple(str(name[0]) for name in names if str(name[0]).startswith("bodies."))
 
 
-def _of_takeoff(values: Numbers, path: str, what: str, k: str | None) -> tuple[Target, ...]:
+def _of_takeoff(batch: Batch, path: str, what: str, k: str | None) -> tuple[Target, ...]:
+    values = batch.values
     name: Name = (what, int(k)) if k else ("takeoff", what)
     if name not in values:
         there = [_spelled(n) for n in values if n[0] in ("takeoff", *_VECTORS)]
         raise SomersaultError(f"{path} is no number of this takeoff; it has {', '.join(there)}")
+    if leaves_plane(batch.model, what, int(k) if k else None):
+        raise SomersaultError(
+            f"{path} would turn {batch.model.name} out of the plane in which it moves; vary "
+            "something else, or load the model with base='free'"
+        )
     return (Target(name, unit=_UNITS[what]),)
 
 

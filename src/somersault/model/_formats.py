@@ -52,7 +52,7 @@ def reader(ending: str) -> Reader | None:
 def _read_biomod(path: Path, base: Base | None) -> Model:
     from somersault.model.read._biomod import read_biomod
 
-    return rebased(read_biomod(path), base)
+    return read_biomod(path, base)
 
 
 def _read_osim(path: Path, base: Base | None) -> Model:

@@ -58,12 +58,15 @@ def load(
         A `Model` is given back as it is.
     axes : sequence of int, optional
         The body's axes about which it somersaults, tilts and twists: (2, 1, 3) unless said
-        otherwise, whatever the file; (1, 2, 3) for an acrobat of biorbd's with x to his right.
-    base : {"free", "fixed"}, optional
-        "free" lets go of what the file fixes to the ground, or of the body on joints there;
-        "fixed" holds the base that the file has free. By default what the file says: in MJCF a
-        free joint, in a .bioMod the root's six degrees of freedom; a URDF's root link is free
-        unless it is called `world` or is a mere frame, without mass and with one joint on it.
+        otherwise, whatever the file; (1, 2, 3) for an acrobat of biorbd's with x to his right. A
+        planar model somersaults about the axis across its plane.
+    base : {"free", "planar", "fixed"}, optional
+        "free" lets go, in space, of what the file fixes to the ground, or of the body on joints
+        there; "planar" does so in the plane that the file has, or else across the axis of
+        somersault; "fixed" holds the base that the file has free. By default what the file says:
+        in MJCF a free joint, in a .bioMod the root's six degrees of freedom, in any format the
+        three of a plane; a URDF's root link is free unless it is called `world` or is a mere frame,
+        without mass and with one joint on it.
 
     Returns
     -------
@@ -86,8 +89,11 @@ def load(
     if base is not None:
         one_of("base", base, get_args(Base))
     model = _found(source, base)
+    if wanted is not None:
+        plane = wanted[0] if base == "planar" else model.plane
+        model = replace(model, axes=wanted, plane=plane)
     check_mass_matrix(model)
-    return model if wanted is None else replace(model, axes=wanted)
+    return model
 
 
 def _found(source: str | os.PathLike[str] | Model, base: Base | None) -> Model:

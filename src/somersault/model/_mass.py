@@ -102,8 +102,8 @@ def _independent(model: Model) -> tuple[Array, list[str]]:
     """How all speeds follow from those that follow no other, and the names of these."""
     ahead = 6 * model.free
     rows = len(model.speeds)
-    names = [_BASE[0]] * 3 + [_BASE[1]] * 3 if model.free else []
-    columns = list(np.eye(ahead + rows)[:ahead])
+    names = [_BASE[way // 3] for way in model.base_ways]
+    columns = [np.eye(ahead + rows)[way] for way in model.base_ways]
     for joint in model.joints:
         if joint.follows is not None:
             continue

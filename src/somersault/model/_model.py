@@ -50,6 +50,9 @@ class Model:
     axes : tuple of int
         The base's axes about which it somersaults, tilts and twists: they decide what those angles
         mean, and nothing else.
+    plane : int, optional
+        The base's axis across the plane in which a free base moves, which is then the axis of
+        somersault. By default the base moves in space.
     file_coordinates : FileCoordinates
         For reading recordings alone.
 
@@ -70,14 +73,17 @@ class Model:
     bodies: tuple[Body, ...]
     ignored: tuple[str, ...] = ()
     axes: Axes = AXES
+    plane: int | None = None
     file_coordinates: FileCoordinates = field(default=FileCoordinates(), compare=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "axes", as_axes(self.axes))
-        check(self.name, self.free, self.bodies, self.axes)
+        check(self.name, self.free, self.bodies, self.axes, self.plane)
 
     def __repr__(self) -> str:
         base = "free" if self.free else "on a fixed base"
+        if self.plane is not None:
+            base = f"free in the plane across axis {self.plane}"
         counts = [(len(self.bodies), "body", "bodies"), (len(self.joints), "joint", "joints")]
         parts = [f"{n} {one if n == 1 else many}" for n, one, many in counts]
         return f"<Model {self.name!r}: {', '.join(parts)}, {self.mass:g} kg, {base}>"
@@ -96,6 +102,17 @@ class Model:
     def speeds(self) -> tuple[str, ...]:
         """Names of the joint speeds; a ball has three, along its body's axes."""
         return speed_names(self.joints)
+
+    @cached_property
+    def base_ways(self) -> tuple[int, ...]:
+        """Which of six ways its base moves in: turns about its axes 1, 2, 3 (0 to 2), and shifts
+        along them (3 to 5)."""
+        if not self.free:
+            return ()
+        if self.plane is None:
+            return (0, 1, 2, 3, 4, 5)
+        across = self.plane - 1
+        return (across, *(3 + k for k in range(3) if k != across))
 
     @cached_property
     def mass(self) -> float:

@@ -11,18 +11,21 @@ from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault.attitude import AXES, Axes
 from somersault.model._bodies import GROUND, Body, Follow, Joint, speed_names
 
+_ALONG = 1 - 1e-12  # cosine to the normal of a plane from which on a hinge turns in the plane
 FREE_IT = (
     "give its base a free joint (in a .bioMod: its root segment translations xyz beside "
     "rotations xyz)"
 )
 
 
-def check(name: str, free: bool, bodies: tuple[Body, ...], axes: Axes) -> None:
+def check(
+    name: str, free: bool, bodies: tuple[Body, ...], axes: Axes, plane: int | None = None
+) -> None:
     """Refuse what cannot be a body in the air, naming the body or joint and the mend.
 
     Parameters
     ----------
-    name, free, bodies, axes
+    name, free, bodies, axes, plane
         Of a `Model`.
 
     Raises
@@ -37,6 +40,8 @@ def check(name: str, free: bool, bodies: tuple[Body, ...], axes: Axes) -> None:
             f"{name} has a fixed base, so it has no somersault, tilt or twist; leave its "
             f"axes out, or {FREE_IT}"
         )
+    if plane is not None:
+        _check_plane(name, free, axes, plane)
     for what, names in (
         ("body", [body.name for body in bodies]),
         ("joint", [joint.name for joint in joints]),
@@ -63,7 +68,24 @@ def check(name: str, free: bool, bodies: tuple[Body, ...], axes: Axes) -> None:
     if math.fsum(body.mass for body in bodies) <= 0:
         raise SomersaultError(f"{name} has no mass; give its bodies masses")
     _check_moving_mass(name, bodies)
-    _warn_of_impossible(name, bodies)
+    _warn_of_impossible(name, bodies if plane is None else _turning_out(bodies, plane))
+
+
+def _check_plane(name: str, free: bool, axes: Axes, plane: int) -> None:
+    if not free:
+        raise SomersaultError(
+            f"{name} has a fixed base, so it moves in no plane of its own; leave its plane out"
+        )
+    if isinstance(plane, bool) or plane not in (1, 2, 3):
+        raise SomersaultError(
+            f"{name} has the plane {plane!r}; give the base's axis across it, 1, 2 or 3"
+        )
+    if axes[0] != plane:
+        raise SomersaultError(
+            f"{name} moves in the plane across its axis {plane}, so it somersaults about that and "
+            f"not about axis {axes[0]}; give axes that begin with {plane}, or load it with "
+            "base='free'"
+        )
 
 
 def _check_tree(name: str, free: bool, index: int, body: Body) -> None:
@@ -104,6 +126,22 @@ def _check_body(name: str, body: Body) -> None:
     size = np.abs(inertia).max()
     if np.abs(inertia - inertia.T).max() > 1e-6 * size:
         raise SomersaultError(f"{where} has an inertia that is not symmetric; make it symmetric")
+
+
+def _turning_out(bodies: tuple[Body, ...], plane: int) -> tuple[Body, ...]:
+    """The bodies that may turn out of the plane of a base, across its axis `plane`: of the others
+    only the inertia about that axis counts."""
+    turns: list[np.ndarray] = []
+    within: list[bool] = []
+    for index, body in enumerate(bodies):
+        turns.append(turns[body.parent] @ np.array(body.rotation) if index else np.eye(3))
+        along = [
+            abs((turns[-1] @ joint.axis)[plane - 1]) if joint.kind == "hinge" else 0.0
+            for joint in body.joints
+            if joint.kind != "slide"
+        ]
+        within.append((within[body.parent] if index else True) and all(c > _ALONG for c in along))
+    return tuple(body for body, inside in zip(bodies, within, strict=True) if not inside)
 
 
 def _warn_of_impossible(name: str, bodies: tuple[Body, ...]) -> None:

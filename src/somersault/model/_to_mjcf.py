@@ -80,6 +80,8 @@ def mjcf(model: Model) -> str:
     for index, body in enumerate(model.bodies):
         base = model.free and index == 0
         above[index] = _add_body(above[body.parent], body, base)
+        if base:
+            _add_root(above[index], model)
         for number, shape in enumerate(body.shapes):
             _add_shape(above[index], assets, shape, f"{body.name}.{number}")
     _add_followers(root, model)
@@ -91,9 +93,7 @@ def mjcf(model: Model) -> str:
 
 def _add_body(above: Element, body: Body, base: bool) -> Element:
     element = SubElement(above, "body", name=body.name)
-    if base:
-        SubElement(element, "freejoint")
-    else:
+    if not base:
         _place(element, np.array(body.position), np.array(body.rotation))
     moments, axes = _principal(np.array(body.inertia))
     inertial = SubElement(element, "inertial", mass=_text([max(body.mass, _LEAST)]))
@@ -102,6 +102,16 @@ def _add_body(above: Element, body: Body, base: bool) -> Element:
     for joint in body.joints:
         _add_joint(element, joint)
     return element
+
+
+def _add_root(element: Element, model: Model) -> None:
+    """A free joint; for a base in a plane two slides and the hinge across them."""
+    if model.plane is None:
+        SubElement(element, "freejoint")
+        return
+    kinds = ["hinge" if axis == model.plane else "slide" for axis in (1, 2, 3)]
+    for kind, axis in sorted(zip(kinds, np.eye(3), strict=True), key=lambda at: at[0] == "hinge"):
+        SubElement(element, "joint", type=kind, axis=_text(axis))
 
 
 def _principal(inertia: Array) -> tuple[Array, Array]:

@@ -48,7 +48,7 @@ def coordinates(model: Model, axis: int, locked: frozenset[int] = frozenset()) -
 
     The order is the thesis's: the two turns across the axis of spin, tilt first and twist last,
     antisymmetric joint motions, the turn about the axis, symmetric ones, and what has no mirror
-    image.
+    image. A planar model does not turn across the axis.
     """
     before, about, after = cycle(axis)
     moves = motions(model, locked)
@@ -58,7 +58,8 @@ def coordinates(model: Model, axis: int, locked: frozenset[int] = frozenset()) -
         columns[3:, [3 + k for k in moves]] = np.array([*moves.values()]).T
     moves = {k: columns[:, 3 + k] for k in moves}
     called = {axis - 1: name for axis, name in zip(model.axes, _TURNS, strict=True)}
-    across = sorted((before, after), key=lambda i: _FIRST.index(called[i]))
+    across = [i for i in (before, after) if i in model.base_ways]
+    across.sort(key=lambda i: _FIRST.index(called[i]))
     antisymmetric: list[tuple[str, Array]] = []
     symmetric: list[tuple[str, Array]] = []
     for pair in mirror_pairs(model):
@@ -75,7 +76,9 @@ def coordinates(model: Model, axis: int, locked: frozenset[int] = frozenset()) -
     ahead = [(called[i], turns[i]) for i in across]
     listed = [*ahead, *antisymmetric, (called[about], turns[about]), *symmetric, *alone]
     names = [name for name, _ in listed]
-    places = Attitude(*(names.index(called[i]) for i in (before, about, after)))
+    places = Attitude(
+        *(names.index(called[i]) if i in model.base_ways else None for i in (before, about, after))
+    )
     return Coordinates(tuple(names), np.column_stack([c for _, c in listed]), places)
 
 

@@ -20,9 +20,9 @@ from somersault.stability._coordinates import coordinates, locked_speeds
 from somersault.stability._gyric import GyricSystem
 from somersault.stability._principal import (
     Axis,
+    axes_of_spin,
     axis_index,
     or_somersault,
-    principal_axes,
     require_free,
     require_inertia,
 )
@@ -124,7 +124,7 @@ def _system(
     q = posed(model, kinds["pose"])
     names = tuple(kinds["body"])
     values = _stacked([np.asarray(v, float) for v in kinds["body"].values()])
-    about = principal_axes(composite_inertia(model, q, names, values))
+    about = axes_of_spin(model, composite_inertia(model, q, names, values))
     require_inertia(model, about.inertias)
     index = _one_axis(model, about.inertias, axis)
     steady = steady_matrices(model, q, about.axes[..., index], names, values)

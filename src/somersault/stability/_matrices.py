@@ -2,7 +2,9 @@
 
 M ẍ + Ω (G + D) ẋ + Ω² (K + K′) x = 0 (Playter 1994, eq. 4.1), here with Ω = 1. The deviations
 are small turns about the base's axes, seen from a frame that turns steadily with the spin,
-and the joints' own; translation is gone, because the centre of mass stays where it is.
+and the joints' own; translation is gone, because the centre of mass stays where it is. A base in a
+plane does not move across it; of its turns, rows and columns of the one about the normal alone
+mean anything.
 """
 
 from __future__ import annotations
@@ -75,7 +77,8 @@ def _loads(equations: Equations, q: Any, axis: Any, x: Any, dx: Any, ddx: Any) -
         return inverse_dynamics(tree, pose, omega, speeds, alpha, a, accelerations)
 
     _, force, _ = needed([0.0, 0.0, 0.0])
-    moment, _, torques = needed(scale(-1.0 / tree.mass, force))
+    falling = scale(-1.0 / tree.mass, force)
+    moment, _, torques = needed([a if 3 + k in tree.ways else 0.0 for k, a in enumerate(falling)])
     return [*moment, *torques]
 
 

@@ -116,8 +116,23 @@ def axis_index(inertias: Array, axis: Axis | str | int) -> int:
     )
 
 
+def axes_of_spin(model: Model, inertia: Array) -> PrincipalAxes:
+    """Principal inertias (…, 3) and axes (…, 3, 3) of inertia matrices (…, 3, 3).
+
+    A planar model turns about the axis across its plane, a principal axis or not: for it they are
+    the base's own axes, and the moments about them.
+    """
+    if model.plane is None:
+        return principal_axes(inertia)
+    return PrincipalAxes(
+        np.einsum("...kk->...k", inertia).copy(), np.broadcast_to(np.eye(3), inertia.shape)
+    )
+
+
 def require_inertia(model: Model, inertias: Array) -> None:
     """Refuse bodies without inertia about some axis: nothing says how they would turn."""
+    if model.plane is not None:
+        inertias = inertias[..., model.plane - 1 : model.plane]
     least, most = np.min(inertias, -1), np.max(inertias, -1)
     if not np.all(least > 1e-12 * most):
         raise SomersaultError(
@@ -127,7 +142,15 @@ def require_inertia(model: Model, inertias: Array) -> None:
 
 
 def or_somersault(model: Model, axis: Axis | str | int | None) -> Axis | str | int:
-    """The axis asked for, or else the one that the model somersaults about."""
+    """The axis asked for, or else the one that the model somersaults about.
+
+    SomersaultError for an axis about which a planar model does not turn.
+    """
+    if model.plane is not None and axis is not None and str(axis) != str(model.plane):
+        raise SomersaultError(
+            f"{model.name} moves in the plane across its axis {model.plane}, so it spins about no "
+            f"other; leave axis {axis!r} out, or load the model with base='free'"
+        )
     return model.axes[0] if axis is None else axis
 
 

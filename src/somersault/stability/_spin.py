@@ -15,9 +15,9 @@ from somersault.model import pose as posed
 from somersault.stability._coordinates import coordinates
 from somersault.stability._principal import (
     Axis,
+    axes_of_spin,
     axis_index,
     or_somersault,
-    principal_axes,
     require_free,
     require_inertia,
 )
@@ -38,7 +38,7 @@ def spin(
         A shipped model's name, a model file, or a model.
     axis : {"minor", "intermediate", "major", 1, 2, 3}, optional
         By its inertia, or the principal axis nearest that body axis. By default the axis of
-        somersault, the first of the model's `axes`.
+        somersault, the first of the model's `axes`; a planar model has no other.
     pose : mapping of str to float, optional
         Joint angles in rad (m for slides) by a joint's name or, mirrored, by a left–right pair's.
         The other joints stand as the file draws them.
@@ -65,9 +65,10 @@ def spin(
     q = posed(model, pose)
     if q.ndim != 1:
         raise SomersaultError("a spin has one pose; use stability.chart for several")
-    about = principal_axes(composite_inertia(model, q))
+    axis = or_somersault(model, axis)
+    about = axes_of_spin(model, composite_inertia(model, q))
     require_inertia(model, about.inertias)
-    index = axis_index(about.inertias, or_somersault(model, axis))
+    index = axis_index(about.inertias, axis)
     steady = steady_matrices(model, q, about.axes[:, index])
     mass, gyric, stiffness = steady.in_axes(about.axes)
     _require_independent(model, coordinates(model, index + 1).transformed(mass))
@@ -98,7 +99,8 @@ def principal_inertias(model: str | Model, pose: Mapping[str, ArrayLike] | None 
     Returns
     -------
     numpy.ndarray, shape (..., 3)
-        About the principal axes nearest body axes 1, 2 and 3, kg m².
+        About the principal axes nearest body axes 1, 2 and 3 (of a planar model: about the base's
+        own axes), kg m².
 
     Raises
     ------
@@ -114,7 +116,7 @@ def principal_inertias(model: str | Model, pose: Mapping[str, ArrayLike] | None 
     """
     model = load(model)
     require_free(model)
-    return principal_axes(composite_inertia(model, posed(model, pose))).inertias
+    return axes_of_spin(model, composite_inertia(model, posed(model, pose))).inertias
 
 
 def _require_independent(model: Model, mass: Array) -> None:

@@ -83,6 +83,8 @@ def holding_torques(
 ) -> tuple[Array, Array]:
     """What holds the joints in steady spins about the principal axes nearest that of somersault.
 
+    A planar model spins about the axis across its plane, a principal axis or not.
+
     Parameters
     ----------
     model : Model
@@ -118,11 +120,12 @@ def holding_torques(
     before, k, after = cycle(model.axes[0])
     axis = np.tile(np.eye(3)[k], (len(q), 1))
     inertia = whole[:, k, k].copy()
-    tilted = np.abs(whole[:, before, k]) + np.abs(whole[:, k, after]) > _ALONG * inertia
-    if tilted.any():  # elsewhere the body's own axis is a principal axis as it is
-        about = principal_axes(whole[tilted])
-        inertia[tilted], axis[tilted] = about.inertias[:, k], about.axes[..., k]
-    require_inertia(model, np.linalg.eigvalsh(whole[:1]))
+    if model.plane is None:
+        tilted = np.abs(whole[:, before, k]) + np.abs(whole[:, k, after]) > _ALONG * inertia
+        if tilted.any():  # elsewhere the body's own axis is a principal axis as it is
+            about = principal_axes(whole[tilted])
+            inertia[tilted], axis[tilted] = about.inertias[:, k], about.axes[..., k]
+        require_inertia(model, np.linalg.eigvalsh(whole[:1]))
     values = np.zeros((1, 0)) if values is None else values
     parts = [np.broadcast_to(x, (len(q), x.shape[-1])) for x in (q, axis, values)]
     joined = np.concatenate(parts, 1)

@@ -46,7 +46,8 @@ class Spin:
     principal_inertias : numpy.ndarray, shape (3,)
         About the principal axes nearest body axes 1, 2 and 3, kg m².
     principal_axes : numpy.ndarray, shape (3, 3)
-        Their directions, as columns, in the base's axes.
+        Their directions, as columns, in the base's axes. Of a planar model these are the base's own
+        axes, principal or not, as it turns about the one across its plane alone.
     holding_torques : mapping of str to float
         What holds each joint at Ω = 1 rad/s, by its speed's name, N m (N); times Ω² otherwise.
     outboard_inertias : mapping of str to float
@@ -72,8 +73,10 @@ class Spin:
         """k1 and k3 (Playter 1994, section 2.3.2), I2 being the inertia about the axis of spin.
 
         For spins about other axes than 2 the axes are renamed in turn, so that the order
-        1, 2, 3 stays right-handed.
+        1, 2, 3 stays right-handed. A planar model, which neither tilts nor twists, has none: nan.
         """
+        if self.model.plane is not None:
+            return {"k1": np.nan, "k3": np.nan}
         before, about, after = self.principal_inertias[list(cycle(self.axis))]
         return {"k1": float((about - after) / before), "k3": float((about - before) / after)}
 

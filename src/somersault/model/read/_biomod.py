@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from somersault._core.errors import SomersaultError, SomersaultWarning
-from somersault.model._base import root, rooted
+from somersault.model._base import Base, Rooted, root, rooted
 from somersault.model._bodies import GROUND, Body, Joint
 from somersault.model._model import FileCoordinates, Model
 from somersault.model._weld import merge_welded
@@ -25,13 +25,14 @@ from somersault.model.read._biomod_text import File
 from somersault.model.read._biomod_words import Words, read_text, shown
 
 
-def read_biomod(path: Path) -> Model:
+def read_biomod(path: Path, base: Base | None = None) -> Model:
     """The model in a `.bioMod` file.
 
     Segments without degrees of freedom are welded to their parents. A root that can move in all
-    six ways becomes the free base, in its own axes; any other root stays on joints to the
-    ground. Joints are named as biorbd names degrees of freedom (`RightUpperArm_RotY`), a
-    quaternion joint `<segment>_Quat`. What is left out or read otherwise is said in warnings.
+    six ways, or in the three of a plane, becomes the free base, in its own axes; any other root
+    stays on joints to the ground, unless another `base` is asked for. Joints are named as biorbd
+    names degrees of freedom (`RightUpperArm_RotY`), a quaternion joint `<segment>_Quat`. What is
+    left out or read otherwise is said in warnings.
     Raises SomersaultError, with the line, for what cannot be read or cannot be flown.
     """
     file = File(Words(path.name, read_text(path)))
@@ -39,7 +40,7 @@ def read_biomod(path: Path) -> Model:
     segments = list(file.segments.values())
     bodies = _bodies(file, segments)
     _refuse_mirrors(path.name, merge_welded(bodies, free=False))
-    on = rooted(path.name, bodies, free=False)
+    on = rooted(path.name, bodies, free=False, base=base)
     if not on.bodies:
         raise SomersaultError(
             f"{path.name}: no segment has translations or rotations, so nothing can fly; give "
@@ -57,7 +58,9 @@ def read_biomod(path: Path) -> Model:
         name=path.stem,
         free=on.free,
         bodies=moving,
-        ignored=_ignored(file, segments, on.let_go),
+        ignored=_ignored(file, segments, on, base),
+        axes=on.axes,
+        plane=on.plane,
         file_coordinates=FileCoordinates(held),
     )
 
@@ -160,7 +163,7 @@ def _refuse_mirrors(file: str, bodies: tuple[Body, ...]) -> None:
             )
 
 
-def _ignored(file: File, segments: list[Segment], root: tuple[Joint, ...]) -> tuple[str, ...]:
+def _ignored(file: File, segments: list[Segment], on: Rooted, base: Base | None) -> tuple[str, ...]:
     """What the file held that has no part in flight, in words; the joints of a free root too."""
     said = [_counted(kind, number) for kind, number in file.ignored.items()]
     moving = {GROUND_PARENT: False}
@@ -168,8 +171,10 @@ def _ignored(file: File, segments: list[Segment], root: tuple[Joint, ...]) -> tu
         free = bool(segment.translations or segment.rotations)
         moving[segment.name] = free or moving[segment.parent]
     fixed = [name for name, moves in moving.items() if not moves and name != GROUND_PARENT]
+    if base in ("free", "planar"):  # which may have let go of them
+        fixed = list(on.still)
     said += [f"segment {name}, fixed to the ground" for name in fixed]
-    if any(joint.damping for joint in root):
+    if any(joint.damping for joint in on.let_go):
         said.append("the dampings of the root")  # nothing damps a fall
     return tuple(said)
 

@@ -29,7 +29,7 @@ def read_mjcf(path: Path, base: Base | None = None) -> Model:
     Parameters
     ----------
     path : Path
-    base : {"free", "fixed"}, optional
+    base : {"free", "planar", "fixed"}, optional
         Let go of what the file fixes to the world, or hold the free body.
 
     Raises
@@ -77,7 +77,7 @@ def read_mjcf(path: Path, base: Base | None = None) -> Model:
     left_out += [f"body {name}, fixed to the ground" for name in on.still]
     if any(joint.damping for joint in on.let_go):
         left_out.append("the dampings of the root")
-    return Model(path.stem, on.free, on.bodies, tuple(left_out))
+    return Model(path.stem, on.free, on.bodies, tuple(left_out), on.axes, on.plane)
 
 
 _PLAINER = {

@@ -38,7 +38,7 @@ def read_osim(path: Path, base: Base | None = None) -> Model:
     Parameters
     ----------
     path : Path
-    base : {"free", "fixed"}, optional
+    base : {"free", "planar", "fixed"}, optional
         Let the model go, or hold it by its base.
 
     Raises
@@ -67,7 +67,7 @@ def read_osim(path: Path, base: Base | None = None) -> Model:
         ignored.append("the springs and dampers of the base")
     held = root(bodies, on.bodies[0].name) if on.free and on.let_go else ()
     coordinates = FileCoordinates(held, gears.geared)
-    return Model(path.stem, on.free, on.bodies, tuple(ignored), file_coordinates=coordinates)
+    return Model(path.stem, on.free, on.bodies, tuple(ignored), on.axes, on.plane, coordinates)
 
 
 def _let_go(parts: dict[str, Part], links: list[Links]) -> list[Links]:

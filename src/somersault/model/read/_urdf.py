@@ -39,7 +39,7 @@ def read_urdf(path: Path, base: Base | None = None) -> Model:
     Parameters
     ----------
     path : Path
-    base : {"free", "fixed"}, optional
+    base : {"free", "planar", "fixed"}, optional
         Let the robot go, or hold it by its root link (or what its floating joint frees).
 
     Raises
@@ -67,7 +67,7 @@ def read_urdf(path: Path, base: Base | None = None) -> Model:
     left_out += [f"link {name}, fixed to the ground" for name in on.still]
     if any(joint.damping for joint in on.let_go):
         left_out.append("the dampings of the root")
-    return Model(path.stem, on.free, on.bodies, tuple(left_out))
+    return Model(path.stem, on.free, on.bodies, tuple(left_out), on.axes, on.plane)
 
 
 def _root(file: Elements) -> str:
