@@ -58,6 +58,7 @@ class Tree:
     free: bool
     bodies: tuple[Body, ...]
     name: str = "tree"
+    plane: None = None
 
     @property
     def joints(self) -> tuple[Joint, ...]:
