@@ -290,6 +290,12 @@ def test_joints_written_from_the_other_end(tmp_path: Path) -> None:
 
 
 @needs_opensim
+def test_a_model_of_opensim_2(tmp_path: Path) -> None:
+    knee = pin("q", "hips", "leg", at=((0, -0.1, 0), (0.1, 0.2, 0.3)))
+    against_opensim(tmp_path, version_3([HIPS, LEG], [six("hips"), knee], version=20302))
+
+
+@needs_opensim
 def test_a_body_without_a_joint_is_free(tmp_path: Path) -> None:
     model, answer = against_opensim(tmp_path, version_4([LEG, HIPS], [pin("q", "hips", "leg")]))
     assert model.free
@@ -498,6 +504,19 @@ def test_two_coordinates_of_one_name_are_told_apart(tmp_path: Path) -> None:
     ]
     model = read(tmp_path, version_4([HIPS, LEG, SHANK], hinges))
     assert [joint.name for joint in model.joints] == ["q_joint_q", "knee_q"]
+
+
+def test_sockets_as_versions_between_three_and_four_wrote_them(tmp_path: Path) -> None:
+    text = version_4([HIPS, LEG], [six("hips"), Q])
+    wanted = read(tmp_path, text)
+    named = re.sub("socket_(parent_frame|child_frame|parent)>", r"socket_\1_connectee_name>", text)
+    assert read(tmp_path, named) == wanted
+    connector = (
+        r'<connectors><Connector_PhysicalFrame_ name="\1"><connectee_name>\2</connectee_name>'
+        r"</Connector_PhysicalFrame_></connectors>"
+    )
+    old = re.sub(r"<socket_(parent)>([^<]*)</socket_parent>", connector, text)
+    assert read(tmp_path, old) == wanted
 
 
 def test_a_planar_root_is_held_if_asked_and_a_fixed_one_stays_on_the_ground(
