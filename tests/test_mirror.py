@@ -110,6 +110,12 @@ def test_arms_are_a_pair(name: str) -> None:
     np.testing.assert_allclose(pose(model, {"shoulder": 1.3}), [1.3, -1.3])
 
 
+@pytest.mark.parametrize("name", ["furrer", "gymnast", "doll"])
+def test_a_clamped_trunk_leaves_its_limbs_their_pairs(name: str) -> None:
+    free, clamped = load(name), load(name, base="fixed")
+    assert mirror_pairs(clamped) == mirror_pairs(free)
+
+
 @pytest.mark.parametrize("name", ["book", "human_layout", "simplest"])
 def test_nothing_is_paired_without_two_limbs(name: str) -> None:
     assert mirror_pairs(load(name)) == ()

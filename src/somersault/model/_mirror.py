@@ -179,7 +179,8 @@ def _drawn(model: Model) -> list[_Drawn]:
 def _pairs(model: Model, drawn: list[_Drawn], normal: int) -> tuple[Pair, ...]:
     mirror = np.eye(3)
     mirror[normal, normal] = -1.0
-    origin = drawn[0].com
+    alone = sum(body.parent == GROUND for body in model.bodies) == 1
+    origin = drawn[0].com if alone else np.zeros(3)  # of a trunk, or of what limbs are clamped to
     size = float(max(np.linalg.norm(d.com - origin) for d in drawn)) + 1e-3
     images: dict[int, int] = {GROUND: GROUND}
     for index, body in enumerate(model.bodies):

@@ -21,9 +21,7 @@ from somersault.engine import pool, threads
 from somersault.stability._gyric import GyricSystem, ScaledSystem
 
 _EPS = float(np.finfo(float).eps)
-_ROUNDINGS = (
-    64.0  # errors of rounding that the noise allows for in each entry: ten times those seen
-)
+_ROUNDINGS = 64.0  # errors of rounding allowed for in each entry: ten times those seen
 _CLEAR = 1e-2  # real parts beyond it, in units of Ω, need no error bound
 _DAMPED = 1e-24  # of a mode's square: what less of it moves dampers is rounding
 _SIGNED = 1e-8  # of the terms of a mode's energy: what less is left of them has no sign
