@@ -230,6 +230,25 @@ def test_mjcf_written_is_the_same_planar_model(plane: int, tmp_path: Path) -> No
         np.testing.assert_allclose(one.inertia, other.inertia, rtol=0, atol=1e-12)
 
 
+def test_a_recording_of_a_planar_root_says_where_the_base_was(tmp_path: Path) -> None:
+    text = (
+        "version 4\nsegment P\nrt 0 0 0 xyz 0 0 1\ntranslations yz\nrotations x\nmass 10\n"
+        "com 0 0 0\ninertia 1 0 0 0 0 0 0 0 0\nendsegment\nsegment L\nparent P\nrotations x\n"
+        "mass 5\ncom 0 0 -0.3\ninertia 1 0 0 0 0 0 0 0 0\nendsegment\n"
+    )
+    model = read(tmp_path / "biped.bioMod", text)
+    times = np.linspace(0, 1, 11)
+    columns = {"P_TransY": 0.5 * times, "P_TransZ": times**2, "P_RotX": 2 * times, "L_RotX": times}
+    rows = np.column_stack([times, *columns.values()])
+    header = ",".join(["time", *columns])
+    np.savetxt(tmp_path / "a.csv", rows, delimiter=",", header=header, comments="")
+    motion = so.read_motion(tmp_path / "a.csv", model, cutoff=None)
+    assert motion.base is not None
+    np.testing.assert_allclose(motion.base.angles, np.outer(2 * times, [1, 0, 0]), atol=1e-12)
+    wanted = np.column_stack([0 * times, 0.5 * times, 1 + times**2])
+    np.testing.assert_allclose(motion.base.positions, wanted, atol=1e-12)
+
+
 # ----------------------------------------------------------------------------------- inertias
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from importlib.metadata import distribution
 from pathlib import Path
 
 import casadi as ca
@@ -10,7 +11,7 @@ import mujoco
 import numpy as np
 import pytest
 from planes import InMujoco, in_plane, random_chain, random_planar_tree, random_takeoff, turn
-from trees import random_inertia
+from trees import mujoco_addresses, quiet, random_inertia
 
 import somersault as so
 from somersault.dynamics import Equations, constrained_dynamics, forward_dynamics, link_tree
@@ -72,6 +73,44 @@ def test_articulated_bodies_and_the_mass_matrix_agree_in_a_plane(seed: int, plan
         for three in (forward_dynamics(*moving), constrained_dynamics(*moving, {}, {}))
     )
     np.testing.assert_allclose(one, other, rtol=0, atol=1e-9 * np.abs(other).max())
+
+
+PUBLIC = {
+    "gymnasium": ("half_cheetah", "hopper", "walker2d_v5", "point"),
+    "dm_control": ("cheetah", "hopper", "walker"),
+}
+
+
+@pytest.mark.parametrize(
+    ("package", "name"), [(package, name) for package, names in PUBLIC.items() for name in names]
+)
+@pytest.mark.filterwarnings("ignore::somersault._core.errors.SomersaultWarning")
+def test_public_walkers_are_planar_and_move_as_in_mujoco(package: str, name: str) -> None:
+    """By the file itself, as MuJoCo reads it."""
+    pytest.importorskip(package)
+    files = distribution(package).files or []
+    file = next(f for f in files if f.name == f"{name}.xml" and "maze" not in str(f))
+    model, rng = so.load(Path(str(file.locate()))), np.random.default_rng(len(name))
+    assert (model.free, model.plane) == (True, 3 if name == "point" else 2)
+    m = mujoco.MjModel.from_xml_path(str(file.locate()))
+    quiet(m)
+    d = mujoco.MjData(m)
+    base = mujoco.mj_name2id(m, mujoco.mjtObj.mjOBJ_BODY, model.bodies[0].name)
+    q_at, v_at = mujoco_addresses(model, m)
+    d.qpos[:] = m.qpos0 + 0.5 * rng.normal(size=m.nq)
+    d.qvel[:], d.qfrc_applied[v_at] = rng.normal(size=m.nv), rng.normal(size=len(v_at))
+    mujoco.mj_forward(m, d)
+    attitude = d.xmat[base].reshape(3, 3)
+    velocity, acceleration = np.zeros((2, 6))  # of the base's origin: turning, then moving
+    mujoco.mj_objectVelocity(m, d, mujoco.mjtObj.mjOBJ_XBODY, base, velocity, 1)
+    v = np.concatenate([velocity, d.qvel[v_at]])
+    gravity = attitude.T @ m.opt.gravity
+    found = accelerations(model, d.qpos[q_at], v, d.qfrc_applied[v_at], gravity)
+    mujoco.mj_rnePostConstraint(m, d)
+    mujoco.mj_objectAcceleration(m, d, mujoco.mjtObj.mjOBJ_XBODY, base, acceleration, 1)
+    acceleration[3:] += gravity  # which stands as an upward acceleration in it
+    expected = np.concatenate([acceleration, d.qacc[v_at]])
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9 * np.abs(expected).max())
 
 
 # ------------------------------------------------------------------------------------ biorbd

@@ -30,11 +30,11 @@ PIVOTS = (0.35, 0.5)  # m, from the first centre of mass, and from the first piv
 CENTRES = (0.0, 0.3, 0.2)  # from a link's pivot to its centre of mass
 
 
-def pendulum() -> Model:
+def pendulum(about: Any = ABOUT) -> Model:
     """Three bodies in the y-z plane, turning about x, each hung on the one before."""
     bodies = []
     for k, (mass, inertia) in enumerate(zip(MASSES, INERTIAS, strict=True)):
-        rows = as_matrix(inertia * np.array(ABOUT))
+        rows = as_matrix(inertia * np.array(about))
         if k == 0:
             bodies.append(Body("one", -1, mass, (0.0, 0.0, 0.0), rows))
             continue
@@ -340,6 +340,23 @@ def test_a_maneuver_in_a_plane_is_a_file(tmp_path: Path) -> None:
         np.testing.assert_allclose(one, other, rtol=0, atol=1e-12)
 
 
+def test_a_spec_may_say_on_which_base(tmp_path: Path) -> None:
+    tables = {"model": "gymnast", "base": "planar", "takeoff": {"spin": 3.0}}
+    planar = so.Maneuver.parse(tables)
+    assert planar.model.plane == 2
+    planar.save(tmp_path / "planar.toml")
+    assert 'base = "planar"' in (tmp_path / "planar.toml").read_text()
+    assert so.Maneuver.read(tmp_path / "planar.toml").model == planar.model
+    with pytest.raises(so.SomersaultError, match="base is 'flat'; give 'free' or 'planar'"):
+        so.Maneuver.parse({**tables, "base": "flat"})
+    (tmp_path / "biped.bioMod").write_text(
+        BIPED.replace("a 2 0 0 0 0 0 0 0 0", "a 2 0 0 0 2 0 0 0 2")
+    )
+    with pytest.warns(so.SomersaultWarning, match="as these have: Leg"):
+        space = so.Maneuver.parse({"model": "biped.bioMod", "base": "free"}, tmp_path)
+    assert (space.model.free, space.model.plane) == (True, None)
+
+
 BIPED = """version 4
 segment Pelvis
 translations yz
@@ -379,6 +396,21 @@ def test_the_shell_flies_a_planar_biomod(
     assert record["final"]["somersault"] > 3.0
     assert record["momentum_drift"] < 1e-12
     assert record["energy_drift"] < 1e-9
+
+
+def test_a_swing_on_the_bar_ends_in_a_flight_in_the_plane() -> None:
+    none = (0.0, 0.0, 0.0)
+    bar = Joint("bar", "hinge", (1.0, 0.0, 0.0))
+    clamp = Body("hands", -1, 0.0, none, (none, none, none), joints=(bar,))
+    mount = so.mounted(pendulum(np.eye(3)), clamp, position=(0.0, 0.0, -0.5))
+    swung = so.swing(mount.held, {"bar": 1.4, "joint1": 0.3}, 1.0)
+    let_go = so.released(swung, mount)
+    flight = so.fly(mount.rider, let_go.takeoff, 0.6, gravity=(0.0, 0.0, -G))
+    assert flight.momentum_drift < 1e-12
+    last = swung.dataset.isel(time=-1)
+    assert flight.angular_velocity[0, 0] == pytest.approx(float(last.rate[0]), rel=1e-12)
+    whole = flight.kinetic_energy[0] + 0.5 * mount.rider.mass * np.sum(flight.velocity**2)
+    assert whole == pytest.approx(float(last.kinetic_energy), rel=1e-12)
 
 
 def test_planar_flights_are_seen() -> None:

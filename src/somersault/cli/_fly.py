@@ -19,7 +19,8 @@ EXAMPLES = """examples:
   somersault fly examples/layout.toml --video layout.mp4 --page layout.html
 
 A SPEC:
-  model = "furrer"              # a shipped name or a file; axes = [1, 2, 3] if its x is lateral
+  model = "furrer"              # a shipped name or a file; axes = [1, 2, 3] if its x is lateral;
+                                # base = "free" or "planar" to let it go in space or a plane
   duration = 5.8                # s
   [takeoff]
   tilt = 0.01                   # rad

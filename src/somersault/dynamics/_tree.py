@@ -58,7 +58,18 @@ class Tree:
         return bool(self.ways)
 
     def kept(self, turn: Vec) -> Vec:
-        """The part of a turn (or turning, of the base) that the base has a way for."""
+        """What of a turn, or of an angular velocity, the base can make.
+
+        Parameters
+        ----------
+        turn : vector
+            In the base's axes.
+
+        Returns
+        -------
+        vector
+            With zero about the axes about which the base does not turn.
+        """
         return [x if k in self.ways else 0.0 for k, x in enumerate(turn)]
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from somersault._core.errors import SomersaultError
 from somersault.flight._spec_motion import Compliance, OffNominal, Recording
 from somersault.flight._takeoff import Takeoff
 from somersault.flight.behaviours import Angle, JointTakeoff
-from somersault.model import Model, load, shipped, write_mjcf
+from somersault.model import Base, Model, load, shipped, write_mjcf
 from somersault.motion import Path as Quintics
 from somersault.spec import (
     Misplaced,
@@ -38,6 +38,7 @@ class Keys:
 
     model: str
     axes: tuple[int, ...] | None = None
+    base: str | None = None  # as `load` takes it
     duration: float | None = None
     gravity: Sequence[float] | None = None
     accuracy: float | None = None
@@ -66,7 +67,7 @@ def parsed(given: Mapping[str, Any], beside: Path) -> dict[str, Any]:
         Naming the key, for what does not fit.
     """
     keys = structured(_found(given, beside), Keys)
-    body = load(keys.model, keys.axes)
+    body = load(keys.model, keys.axes, cast("Base | None", keys.base))
     joints = dict(keys.joints)
     if keys.motion is not None:
         joints = keys.motion.joints(body, keys.duration or 1.0, joints)
@@ -112,7 +113,7 @@ def tables(maneuver: Any, path: Path) -> dict[str, Any]:
     A model that does not ship is written beside it, as MJCF.
     """
     model: Model = maneuver.model
-    result: dict[str, Any] = {"model": _model_name(model, path)}
+    result = _model_keys(model, path)
     if tuple(model.axes) != (2, 1, 3):
         result["axes"] = list(model.axes)
     result |= {k: v for k, v in plain(maneuver).items() if k in _OPTIONS}
@@ -123,12 +124,14 @@ def tables(maneuver: Any, path: Path) -> dict[str, Any]:
     return {name: value for name, value in result.items() if not isinstance(value, dict) or value}
 
 
-def _model_name(model: Model, path: Path) -> str:
-    if model.name in shipped() and load(model.name, model.axes) == model:
-        return model.name
+def _model_keys(model: Model, path: Path) -> dict[str, Any]:
+    """The name of a shipped model and its base, or of the file that the model is written to."""
+    base: Base | None = None if model.plane is None else "planar"
+    if model.name in shipped() and load(model.name, model.axes, base) == model:
+        return {"model": model.name} if base is None else {"model": model.name, "base": base}
     beside = path.with_suffix(".xml")
     write_mjcf(model, beside)
-    return beside.name
+    return {"model": beside.name}
 
 
 # ------------------------------------------------------------------------ kinds of value

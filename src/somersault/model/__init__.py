@@ -1,6 +1,6 @@
 """Bodies in the air: what they are made of, and where they are read from."""
 
-from somersault.model._base import base_on_its_joints
+from somersault.model._base import Base, base_on_its_joints
 from somersault.model._bodies import GROUND, LIMIT_SLACK, Body, Follow, Joint
 from somersault.model._formats import register_format
 from somersault.model._kinematics import (
@@ -38,6 +38,7 @@ __all__ = [
     "IDENTITY",
     "LIMIT_SLACK",
     "ZERO",
+    "Base",
     "Body",
     "Follow",
     "Joint",
