@@ -232,7 +232,10 @@ def test_gears_that_symmetry_makes_anyway_change_nothing() -> None:
             "left_elbow.*right_elbow.*leads them all",
         ),
         ({"left_elbow": JointTakeoff.coupled()}, "left_elbow.*name its leader"),
-        ({"left_elbow": JointTakeoff.coupled(leader="left_elbow")}, "left_elbow.*left_elbow"),
+        (
+            {"left_elbow": JointTakeoff.coupled(leader="left_elbow")},
+            "left_elbow cannot follow itself",
+        ),
     ],
 )
 def test_what_cannot_be_coupled(joints: dict, said: str) -> None:
@@ -306,7 +309,25 @@ def test_one_class_is_a_behaviour() -> None:
     assert last == pytest.approx(flight.landing.joints["left_shoulder"], abs=1e-6)
 
 
+@dataclass(frozen=True)
+class Forgetful(Moving, motion="forgetful"):
+    """A behaviour that does not name the number that it uses."""
+
+    c: float = quantity("N m", default=1.0)
+
+    def acting(self, here: Here) -> list[Any]:
+        return [here.numbers["c"]]
+
+
+def test_a_number_that_is_not_named_is_said() -> None:
+    joints = {"left_shoulder": JointTakeoff.forgetful()}
+    with pytest.raises(SomersaultError, match=r"left_shoulder has no number 'c'.*springs\(\)"):
+        so.fly("furrer", Takeoff(spin=4.0, joints=joints), 0.1)
+
+
 def test_what_a_behaviour_does_not_take_is_said() -> None:
+    with pytest.raises(SomersaultError, match=r"prescribed takes .*times.*by name"):
+        JointTakeoff.prescribed([0.1, 0.4], [0.0, 0.5])
     with pytest.raises(SomersaultError, match="cubic would do nothing for a joint that is free"):
         JointTakeoff.free(cubic=2.0)
     with pytest.raises(SomersaultError, match="springiness is nothing that a joint has"):

@@ -66,6 +66,25 @@ def test_a_saved_maneuver_flies_the_same(name: str, tmp_path: Path) -> None:
     assert main(["fly", str(file)]) == 0
 
 
+def test_another_file_is_never_written_over(tmp_path: Path) -> None:
+    athlete = MANEUVERS["an athlete"]()
+    precious = tmp_path / "mine.xml"
+    precious.write_text("<mujoco/>")
+    with pytest.raises(so.SomersaultError, match=r"mine\.xml is there already"):
+        athlete.save(tmp_path / "mine.toml")
+    assert precious.read_text() == "<mujoco/>"
+    assert not (tmp_path / "mine.toml").exists()
+    athlete.save(tmp_path / "again.toml")
+    athlete.save(tmp_path / "again.toml")  # the same model is no other
+    for name in ("q.xml", ".", "x.json"):
+        with pytest.raises(so.SomersaultError, match=r"give a \.toml file"):
+            athlete.save(tmp_path / name)
+    (tmp_path / "folder.toml").mkdir()
+    with pytest.raises(so.SomersaultError, match=r"give a \.toml file"):
+        athlete.save(tmp_path / "folder.toml")
+    assert not (tmp_path / "folder.xml").exists()
+
+
 def test_what_is_by_default_is_not_written(tmp_path: Path) -> None:
     file = tmp_path / "m.toml"
     Maneuver("furrer", Takeoff(spin=8.0, joints={"shoulder": JointTakeoff(angle=1.4)})).save(file)

@@ -260,12 +260,15 @@ class Maneuver(Variants):
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the maneuver as a TOML file, whole or not at all.
-         It flies the same, bit for bit, when it is read again, and by `somersault fly`. A model
-        that does not ship with the package is written to the same folder as MJCF.
+
+        It flies the same, bit for bit, when it is read again, and by `somersault fly`. A model
+        that does not ship with the package is written to the same folder as MJCF, under the same
+        name; a file of that name that is something else stays as it is.
 
         Parameters
         ----------
         path : str or path-like
+            It ends in .toml.
 
         Raises
         ------
@@ -283,7 +286,12 @@ class Maneuver(Variants):
         0.5
         """
         file = Path(path)
-        write_toml(file, tables(self, file))
+        if file.suffix.lower() != ".toml" or file.is_dir():
+            raise SomersaultError(f"{str(path)!r} is no place for a maneuver; give a .toml file")
+        try:
+            write_toml(file, tables(self, file))
+        except OSError as trouble:
+            raise SomersaultError(f"{file} cannot be written ({trouble.strerror})") from None
 
     # -------------------------------------------------------------------- other maneuvers
 

@@ -12,11 +12,12 @@ from typing import Any, cast
 
 import numpy as np
 
+from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError
 from somersault.flight._spec_motion import Compliance, OffNominal, Recording
 from somersault.flight._takeoff import Takeoff
 from somersault.flight.behaviours import Angle, JointTakeoff
-from somersault.model import Base, Model, load, shipped, write_mjcf
+from somersault.model import Base, Model, load, mjcf, shipped, write_mjcf
 from somersault.motion import Path as Quintics
 from somersault.spec import (
     Misplaced,
@@ -59,13 +60,16 @@ KEYS = tuple(Keys.__dataclass_fields__)
 def parsed(given: Mapping[str, Any], beside: Path) -> dict[str, Any]:
     """The fields of the maneuver that a SPEC's tables describe.
 
-    Files are looked for beside the SPEC. What [joints] says overrides the recording of [motion].
+    Files are looked for in the SPEC's folder. What [joints] says overrides the recording of
+    [motion].
 
     Raises
     ------
     SomersaultError
         Naming the key, for what does not fit.
     """
+    if not isinstance(given, Mapping):
+        raise SomersaultError(f"a SPEC is a table of keys, and not {shown(given)}")
     keys = structured(_found(given, beside), Keys)
     body = load(keys.model, keys.axes, cast("Base | None", keys.base))
     joints = dict(keys.joints)
@@ -129,9 +133,14 @@ def _model_keys(model: Model, path: Path) -> dict[str, Any]:
     base: Base | None = None if model.plane is None else "planar"
     if model.name in shipped() and load(model.name, model.axes, base) == model:
         return {"model": model.name} if base is None else {"model": model.name, "base": base}
-    beside = path.with_suffix(".xml")
-    write_mjcf(model, beside)
-    return {"model": beside.name}
+    file = path.with_suffix(".xml")
+    if file.exists() and file.read_text(encoding="utf-8", errors="replace") != mjcf(model):
+        raise SomersaultError(
+            f"{file.name} is there already and is another model; save the maneuver under another "
+            "name"
+        )
+    write_mjcf(model, file)
+    return {"model": file.name}
 
 
 # ------------------------------------------------------------------------ kinds of value

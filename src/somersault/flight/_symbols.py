@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from typing import Any
 
 import casadi as ca
 
+from somersault._core.errors import SomersaultError
 from somersault.attitude import in_sequence
 from somersault.dynamics import (
     composite_bodies,
@@ -87,7 +88,7 @@ class Symbols:
             tape = polynomial(self.t - since, self._at(self.p, slot.tape))[0]
         return Here(
             slot.joint, self._at(self.y, slot.q), self._at(self.y, slot.u), self.t,
-            dict(numbers), tuple(paths), self._outboard_of(name), tape,
+            _Numbers(name, numbers), tuple(paths), self._outboard_of(name), tape,
         )  # fmt: skip
 
     def _at(self, vector: Any, places: range) -> list[Any]:
@@ -210,6 +211,20 @@ class Symbols:
             self.tree, self.position, self.omega, self.rate, alpha, acceleration, joints
         )
         return ca.vertcat(*moment, *force, *torques)
+
+
+class _Numbers(dict[str, Any]):
+    """A joint's parameters by name, and a sentence for one that its behaviour does not name."""
+
+    def __init__(self, joint: str, numbers: Iterable[tuple[str, Any]]) -> None:
+        super().__init__(numbers)
+        self._joint = joint
+
+    def __missing__(self, name: str) -> Any:
+        raise SomersaultError(
+            f"joint {self._joint} has no number {name!r} in its equations; its behaviour must name "
+            "it in springs() or parameters()"
+        )
 
 
 def _into_body(quaternion: list[Any], vector: list[Any]) -> list[Any]:

@@ -107,6 +107,9 @@ class Motion:
         motion.check(model)
         return motion
 
+    def __repr__(self) -> str:
+        return f"Motion({len(self.paths)} joints, {self.begin:g} to {self.end:g} s, {self.source})"
+
     @property
     def joints(self) -> tuple[str, ...]:
         """Names of the joints that it moves."""

@@ -38,6 +38,9 @@ class Path:
     coefficients: Array
     known: tuple[float, float] = (-np.inf, np.inf)
 
+    def __repr__(self) -> str:
+        return f"Path({self.knots.shape[-1]} knots)"
+
     def image(self, sign: float, offset: float) -> Path:
         """The path sign · this + offset, as of a mirrored joint.
 

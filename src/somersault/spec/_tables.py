@@ -276,7 +276,8 @@ def _sentence(trouble: BaseException, where: str) -> str:
         key = _joined(where, sorted(strange.extra_fields)[0])
         return f"{key} is no key of a SPEC; here it takes {known}"
     if isinstance(trouble, KeyError):
-        return f"{_joined(where, str(trouble.args[0]))} is missing"
+        key = str(trouble.args[0])
+        return f"{where if where.rpartition('.')[2] == key else _joined(where, key)} is missing"
     inner = getattr(trouble, "exceptions", None)
     if inner:
         return _sentence(_worst(inner), where)

@@ -107,6 +107,8 @@ def check_coupled(model: Model, plans: tuple[JointPlan, ...]) -> None:
         where = f"joint {plan.joint.name} cannot follow {plan.does.leader}"
         if plan.does.leader not in does:
             raise SomersaultError(f"{where}: {model.name} has no joint of that name")
+        if plan.does.leader == plan.joint.name:
+            raise SomersaultError(f"joint {plan.joint.name} cannot follow itself; name its leader")
         leader = does[plan.does.leader]
         if "ball" in (plan.joint.kind, leader.joint.kind):
             raise SomersaultError(f"{where}: one of them is a ball, and only hinges and slides can")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import fields
 from typing import Any, ClassVar
 
 import numpy as np
@@ -21,8 +22,12 @@ class Registry(type):
             motion, *rest = given or (named.pop("motion", None),)
             return behaviour_of(motion)(*rest, **named)
         named = cls.keys_of(named)
-        if len(given) > len(cls._keys()):
-            raise SomersaultError(f"a joint that is {cls._called()} takes {_listed(cls._keys())}")
+        every: Any = cls
+        by_place = [f.name for f in fields(every) if not f.kw_only]
+        if len(given) > len(by_place):
+            raise SomersaultError(
+                f"a joint that is {cls._called()} takes {_listed(cls._keys())}; give them by name"
+            )
         return super().__call__(*given, **named)
 
     def __getattr__(cls, name: str) -> Any:
