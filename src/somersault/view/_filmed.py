@@ -7,10 +7,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from somersault._core.array import Array
-from somersault.view._film import film
-from somersault.view._look import several
-from somersault.view._page import page
-from somersault.view._stills import frame, picture, stroboscopic_picture
 
 if TYPE_CHECKING:
     from somersault.history import History
@@ -48,6 +44,9 @@ class Filmed:
         >>> flight = so.fly("furrer", so.Takeoff(spin=8.6, tilt=0.05), 0.1)
         >>> flight.film("layout.gif", speed=0.5, size=(160, 90))
         """
+        from somersault.view._film import film
+        from somersault.view._look import several
+
         film([self, *several("beside", beside, 0)], path, fps, speed, **look)  # type: ignore[list-item]
 
     def frame(self, time: float, **look: Any) -> Array:
@@ -71,6 +70,8 @@ class Filmed:
         >>> flight.frame(0.05, size=(160, 90)).shape
         (90, 160, 3)
         """
+        from somersault.view._stills import frame
+
         return frame(self, time, **look)  # type: ignore[arg-type]
 
     def page(self, path: str | os.PathLike[str], title: str | None = None) -> None:
@@ -91,6 +92,8 @@ class Filmed:
         >>> with TemporaryDirectory() as folder:
         ...     flight.page(f"{folder}/layout.html")
         """
+        from somersault.view._page import page
+
         page(self, path, title=title)  # type: ignore[arg-type]
 
     def picture(
@@ -121,6 +124,8 @@ class Filmed:
         >>> with TemporaryDirectory() as folder:
         ...     flight.picture(f"{folder}/layout.png", [0.0, 0.1], size=(160, 90))
         """
+        from somersault.view._stills import picture
+
         picture(self, path, times, columns, **look)  # type: ignore[arg-type]
 
     def stroboscopic_picture(
@@ -149,4 +154,6 @@ class Filmed:
         >>> with TemporaryDirectory() as folder:
         ...     flight.stroboscopic_picture(f"{folder}/layout.png", 3, size=(160, 90))
         """
+        from somersault.view._stills import stroboscopic_picture
+
         stroboscopic_picture(self, path, times, **look)  # type: ignore[arg-type]

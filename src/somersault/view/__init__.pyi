@@ -1,0 +1,16 @@
+from ._contact_sheet import contact_sheet as contact_sheet
+from ._contact_sheet import strip as strip
+from ._figure import camera as camera
+from ._figure import draw_pose as draw_pose
+from ._film import check_film as check_film
+from ._film import film as film
+from ._filmed import Filmed as Filmed
+from ._histories import time_histories as time_histories
+from ._look import Look as Look
+from ._page import check_page as check_page
+from ._page import page as page
+from ._plots import root_loci as root_loci
+from ._plots import stability_chart as stability_chart
+from ._stills import frame as frame
+from ._stills import picture as picture
+from ._stills import stroboscopic_picture as stroboscopic_picture
