@@ -3,7 +3,8 @@
     plans -> kinds -> system -> starts -> course -> solve
 
 is put together here and nowhere else. Flights of a batch share their equations and differ in the
-numbers of the takeoff (`_values`), each of which is one for all or an array over the flights.
+numbers of the takeoff (`simulation.Name`), each of which is one for all or an array over the
+flights.
 """
 
 from __future__ import annotations
@@ -24,10 +25,10 @@ from somersault.flight._start import Start, Starts, start, starts
 from somersault.flight._system import System, system
 from somersault.flight._takeoff import Takeoff
 from somersault.flight._tape import Tape, recorded, recorded_each
-from somersault.flight._values import Name, Values
 from somersault.flight.behaviours import JointPlan, kinds
 from somersault.model import Model
 from somersault.motion import Path
+from somersault.simulation import Name, Numbers
 
 _OF_JOINTS = ("times", "angles", "angle", "factor", "offset")  # what a nominal flight may vary
 TOLERANCE_PER_ACCURACY = 1 / 20  # measured: eight somersaults add up about ten step errors
@@ -83,7 +84,7 @@ class Batch:
         """The torques of this batch's one flight, as its takeoff gives it."""
         return recorded(self)
 
-    def sound(self, values: Values, count: int) -> Array:
+    def sound(self, values: Numbers, count: int) -> Array:
         """Whether each flight is one that could be asked for by itself.
 
         Parameters
@@ -99,7 +100,7 @@ class Batch:
         """
         return sound(self.joints, values, count)
 
-    def begun(self, values: Values | None = None, count: int = 1) -> Begun:
+    def begun(self, values: Numbers | None = None, count: int = 1) -> Begun:
         """The flights at takeoff.
 
         Parameters

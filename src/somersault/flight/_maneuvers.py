@@ -9,7 +9,7 @@ his principal axes against the momentum, so that a somersault twists (`arm_tilt`
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -23,7 +23,6 @@ from somersault.flight._takeoff import Takeoff
 from somersault.flight._twist_time import twist_time
 from somersault.model import Model, load
 
-Keyframes = Mapping[str, Sequence[tuple[float, float]]]
 _LEGS_APART = {"hip_abduction": math.pi / 4}
 _MOST_CYCLES = 1_000  # or twists
 

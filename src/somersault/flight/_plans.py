@@ -12,7 +12,6 @@ from somersault._core.errors import SomersaultError
 from somersault.dynamics import Equations, body_kind
 from somersault.flight._plane import kept
 from somersault.flight._takeoff import Takeoff
-from somersault.flight._values import Name
 from somersault.flight.behaviours import (
     JointPlan,
     JointTakeoff,
@@ -21,6 +20,7 @@ from somersault.flight.behaviours import (
     check_coupled,
 )
 from somersault.model import Joint, Model, sides
+from somersault.simulation import Name
 from somersault.stability import holding_torques
 
 

@@ -23,6 +23,7 @@ from somersault.spec import (
     Misplaced,
     Unfit,
     plain,
+    plain_fields,
     read_as,
     structured,
     structured_within,
@@ -162,20 +163,8 @@ def _joint(table: Any, _: Any) -> JointTakeoff:
 
 
 def _joint_table(joint: JointTakeoff) -> dict[str, Any]:
-    table = {
-        one: plain(getattr(joint, one))
-        for one, standard in joint.standard().items()
-        if not _same(getattr(joint, one), standard)
-    }
+    table = plain_fields(joint)
     return {"motion": joint.motion, **table} if joint.is_named() else table
-
-
-def _same(value: Any, standard: Any) -> bool:
-    if value is standard:
-        return True
-    if value is None or standard is None:
-        return False
-    return bool(np.array_equal(value, standard))
 
 
 def _angle(value: Any, _: Any) -> Any:

@@ -17,9 +17,9 @@ from somersault.attitude import (
 from somersault.flight._plane import kept, turning
 from somersault.flight._system import System
 from somersault.flight._takeoff import Takeoff
-from somersault.flight._values import Name, Values
 from somersault.flight.behaviours import JointPlan, Sprung, begin, side_by_side
 from somersault.model import Model
+from somersault.simulation import Name, Numbers
 from somersault.stability import holding_torques
 
 
@@ -37,7 +37,7 @@ class Starts:
     q: Array
     u: Array
     angles: Array
-    values: Values
+    values: Numbers
     bodies: Array
 
 
@@ -78,7 +78,7 @@ def start(system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...], one: S
 
 
 def starts(
-    system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...], values: Values, count: int
+    system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...], values: Numbers, count: int
 ) -> Starts:
     """Attitude, spin and pretension of `count` flights whose numbers are `values`."""
     quaternion, angles = _attitude(takeoff, values, count, system.model)
@@ -112,7 +112,7 @@ def momentum(system: System, begun: Starts) -> Array:
     return kept(system.model, _turned(matrix_from_quaternion(begun.quaternion), h))
 
 
-def _attitude(takeoff: Takeoff, values: Values, count: int, model: Model) -> tuple[Array, Array]:
+def _attitude(takeoff: Takeoff, values: Numbers, count: int, model: Model) -> tuple[Array, Array]:
     axes = model.axes
     if takeoff.quaternion is None:
         names: list[Name] = [("takeoff", n) for n in ("somersault", "tilt", "twist")]
@@ -141,7 +141,7 @@ def _speeds(omega: Array, u: Array) -> Array:
 
 def _pretensioned(
     system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...], begun: Starts
-) -> Values:
+) -> Numbers:
     """The numbers with the torque that balances the nominal spin added to held joints' own.
 
     That is the steady spin of the takeoff pose about its principal axis nearest that of somersault,

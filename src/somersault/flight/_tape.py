@@ -18,8 +18,8 @@ from somersault._core.array import Array
 from somersault.engine import Kernel
 from somersault.flight._course import Course
 from somersault.flight._system import System
-from somersault.flight._values import Values
 from somersault.motion import TAPE_DEGREE, Path
+from somersault.simulation import Numbers
 
 _TOLERANCE = 1e-13  # of each step of the nominal flight
 _LEFT_OUT = 1e-11  # of a piece's greatest torque: what the last coefficients may be,
@@ -48,12 +48,12 @@ class Nominal(Protocol):
     def system(self) -> System: ...
 
     @property
-    def values(self) -> Values: ...
+    def values(self) -> Numbers: ...
 
     @property
     def duration(self) -> float: ...
 
-    def begun(self, values: Values, count: int) -> Flights: ...
+    def begun(self, values: Numbers, count: int) -> Flights: ...
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def recorded(nominal: Nominal) -> Tape:
     return _exact(nominal, nominal.values, 1, _LONGEST)
 
 
-def recorded_each(nominal: Nominal, values: Values, count: int, one: Tape) -> Tape:
+def recorded_each(nominal: Nominal, values: Numbers, count: int, one: Tape) -> Tape:
     """The tapes of many flights, in pieces as long as those of the one tape or shorter.
 
     `values` has the numbers that differ from the nominal flight's.
@@ -108,7 +108,7 @@ def recorded_each(nominal: Nominal, values: Values, count: int, one: Tape) -> Ta
     return whole
 
 
-def _exact(nominal: Nominal, values: Values, count: int, length: float) -> Tape:
+def _exact(nominal: Nominal, values: Numbers, count: int, length: float) -> Tape:
     """The tapes of some flights, in pieces no longer than `length`."""
     flights = nominal.begun(values, count)
     knots = np.broadcast_to(flights.course.knots, (count, flights.course.knots.shape[1]))

@@ -64,7 +64,8 @@ def structured(table: Any, kind: type[T], where: str = "") -> T:
 
 def structured_within(value: Any, kind: Any) -> Any:
     """A dataclass of a table, for a hook of `read_as`.
-     As `structured`, but what does not fit is reported by the call of `structured` that runs the
+
+    As `structured`, but what does not fit is reported by the call of `structured` that runs the
     hook, with the whole key.
 
     Parameters
@@ -97,11 +98,7 @@ def plain(value: Any) -> Any:
         if isinstance(value, kind):
             return how(value)
     if dataclasses.is_dataclass(value):
-        return {
-            field.name: plain(getattr(value, field.name))
-            for field in dataclasses.fields(value)
-            if not _by_default(field, getattr(value, field.name))
-        }
+        return plain_fields(value)
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, np.ndarray | np.generic):
@@ -109,6 +106,28 @@ def plain(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [plain(item) for item in value]
     return value
+
+
+def plain_fields(value: Any) -> dict[str, Any]:
+    """A dataclass as a table of those fields that are not at their default.
+
+    Unlike `plain`, it does not ask how the class itself is written (`written_as`), so that what
+    writes a class can begin with it.
+
+    Parameters
+    ----------
+    value
+        A dataclass.
+
+    Returns
+    -------
+    dict
+    """
+    return {
+        field.name: plain(getattr(value, field.name))
+        for field in dataclasses.fields(value)
+        if not _by_default(field, getattr(value, field.name))
+    }
 
 
 def read_as(kind: Any, hook: Hook) -> None:

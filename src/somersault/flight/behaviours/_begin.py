@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.flight._values import Values
 from somersault.flight.behaviours._coupled import leaders
 from somersault.flight.behaviours._declared import side_by_side
 from somersault.flight.behaviours._plan import JointPlan
+from somersault.simulation import Numbers
 
 
-def begin(plans: tuple[JointPlan, ...], values: Values, count: int) -> tuple[Array, Array]:
+def begin(plans: tuple[JointPlan, ...], values: Numbers, count: int) -> tuple[Array, Array]:
     """Coordinates and speeds of all joints at takeoff.
 
     Parameters

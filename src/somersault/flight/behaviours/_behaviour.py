@@ -16,13 +16,13 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.checks import truth
 from somersault._core.errors import SomersaultError
-from somersault.flight._values import Name, Values
 from somersault.flight.behaviours import _changed, _declared
 from somersault.flight.behaviours._here import Here, Known
 from somersault.flight.behaviours._limits import within
 from somersault.flight.behaviours._registry import Registry, behaviour_names
 from somersault.model import Joint, Model
 from somersault.motion import Path
+from somersault.simulation import Name, Numbers
 
 Self = TypeVar("Self", bound="JointTakeoff")
 Angle = float | Sequence[float] | None
@@ -80,15 +80,6 @@ class JointTakeoff(metaclass=Registry):
         if motion is not None:
             cls.motion = motion
             Registry.classes[motion] = cls
-
-    def standard(self) -> dict[str, Any]:
-        """Its fields by name, with their defaults.
-
-        Returns
-        -------
-        dict
-        """
-        return {f.name: f.default for f in fields(self)}
 
     def is_named(self) -> bool:
         """Whether it has a name, and is not what the model says.
@@ -293,7 +284,7 @@ class JointTakeoff(metaclass=Registry):
             result |= _declared.spread(joint.name, name, getattr(self, name))
         return result
 
-    def begin(self, joint: Joint, values: Values, count: int) -> tuple[Array, Array]:
+    def begin(self, joint: Joint, values: Numbers, count: int) -> tuple[Array, Array]:
         """Coordinates and speeds at takeoff.
 
         Parameters
@@ -311,8 +302,8 @@ class JointTakeoff(metaclass=Registry):
         """
         raise NotImplementedError
 
-    def lasting(self, joint: Joint, values: Values, q: Array) -> Array:
-        """Values of `parameters`.
+    def lasting(self, joint: Joint, values: Numbers, q: Array) -> Array:
+        """Numbers of `parameters`.
 
         Parameters
         ----------
@@ -328,7 +319,7 @@ class JointTakeoff(metaclass=Registry):
         names: list[Name] = [(name, joint.name) for name in self.parameters(joint)]
         return _declared.side_by_side(values, names, len(q))
 
-    def paths(self, joint: Joint, values: Values, count: int) -> tuple[Path, ...]:
+    def paths(self, joint: Joint, values: Numbers, count: int) -> tuple[Path, ...]:
         """Its paths.
 
         Parameters
@@ -343,7 +334,7 @@ class JointTakeoff(metaclass=Registry):
         """
         return ()
 
-    def sound(self, joint: Joint, values: Values, count: int) -> Array:
+    def sound(self, joint: Joint, values: Numbers, count: int) -> Array:
         """Whether the numbers of each flight are such as could be asked for by themselves.
 
         Parameters

@@ -6,15 +6,15 @@ ensemble may vary and their units.
 
 from __future__ import annotations
 
-from dataclasses import Field, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 from typing import Any, Literal
 
 import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.numbers import number, numbers
-from somersault.flight._values import Name, Values
 from somersault.model import Joint
+from somersault.simulation import Name, Numbers
 
 _KEY = "quantity"
 Image = Literal["same", "turned", "angle"]
@@ -117,11 +117,6 @@ def declared(kind: Any) -> dict[str, Quantity]:
     return {f.name: f.metadata[_KEY] for f in fields(kind) if _KEY in f.metadata}
 
 
-def is_quantity(one: Field[Any]) -> bool:
-    """Whether a field is a declared number."""
-    return _KEY in one.metadata
-
-
 # ------------------------------------------------------------------ numbers, checked and by name
 
 
@@ -150,7 +145,7 @@ def spread(joint: str, name: str, value: Any) -> dict[Name, float]:
     return {(name, joint): value}
 
 
-def side_by_side(values: Values, names: list[Name], count: int) -> Array:
+def side_by_side(values: Numbers, names: list[Name], count: int) -> Array:
     """Some of the numbers of many flights as the columns of an array.
 
     Parameters

@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from somersault._core.array import Array
-from somersault.flight._values import Values
 from somersault.flight.behaviours import _declared
 from somersault.flight.behaviours._behaviour import Angle, JointTakeoff
 from somersault.flight.behaviours._here import Here, Known
 from somersault.flight.behaviours._moving import standing, takeoff_angle
 from somersault.model import Joint
+from somersault.simulation import Numbers
 
 
 @dataclass(frozen=True)
@@ -31,8 +31,8 @@ class Locked(JointTakeoff, motion="locked"):
         still: list[Any] = [0.0] * here.joint.speeds
         return Known(list(here.numbers.values()), still, still)
 
-    def begin(self, joint: Joint, values: Values, count: int) -> tuple[Array, Array]:
+    def begin(self, joint: Joint, values: Numbers, count: int) -> tuple[Array, Array]:
         return standing(joint, values, count)
 
-    def lasting(self, joint: Joint, values: Values, q: Array) -> Array:
+    def lasting(self, joint: Joint, values: Numbers, q: Array) -> Array:
         return q

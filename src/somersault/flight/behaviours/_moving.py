@@ -11,12 +11,12 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.dynamics import spring_torques
-from somersault.flight._values import Name, Values
 from somersault.flight.behaviours import _declared
 from somersault.flight.behaviours._behaviour import Angle, JointTakeoff
 from somersault.flight.behaviours._here import Here
 from somersault.flight.behaviours._limits import check_limits
 from somersault.model import Joint
+from somersault.simulation import Name, Numbers
 
 _STOPS = ("stop_stiffness", "stop_damping")
 
@@ -127,11 +127,11 @@ class Moving(Stopped):
         every = super().numbers(joint)
         return {n: x for n, x in every.items() if joint.kind != "ball" or n[0] != "pretension"}
 
-    def begin(self, joint: Joint, values: Values, count: int) -> tuple[Array, Array]:
+    def begin(self, joint: Joint, values: Numbers, count: int) -> tuple[Array, Array]:
         q, _ = standing(joint, values, count)
         return q, _declared.side_by_side(values, speed_names(joint, "rate"), count)
 
-    def lasting(self, joint: Joint, values: Values, q: Array) -> Array:
+    def lasting(self, joint: Joint, values: Numbers, q: Array) -> Array:
         if joint.kind == "ball":
             values = {("pretension", joint.name): 0.0, ("rest", joint.name): 0.0, **values}
         return super().lasting(joint, values, q)
@@ -160,7 +160,7 @@ def takeoff_angle(joint: Joint, angle: Any) -> Any:
     return at
 
 
-def standing(joint: Joint, values: Values, count: int) -> tuple[Array, Array]:
+def standing(joint: Joint, values: Numbers, count: int) -> tuple[Array, Array]:
     """Coordinates (count, c) of a joint's takeoff angle, and no speeds (count, s)."""
     still = np.zeros((count, joint.speeds))
     if joint.kind != "ball":

@@ -10,7 +10,6 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
-from somersault.flight._values import Values
 from somersault.flight.behaviours import _declared
 from somersault.flight.behaviours._behaviour import JointTakeoff
 from somersault.flight.behaviours._here import Here, Known
@@ -18,6 +17,7 @@ from somersault.flight.behaviours._limits import check_limits
 from somersault.flight.behaviours._rows import in_order, sampled
 from somersault.model import Joint
 from somersault.motion import Path, check_rows, moves, polynomial
+from somersault.simulation import Numbers
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class OnPath(JointTakeoff):
         check_limits(joint, tuple(plan.angles))  # a smooth move does not overshoot its ends
         return plan
 
-    def paths(self, joint: Joint, values: Values, count: int) -> tuple[Path, ...]:
+    def paths(self, joint: Joint, values: Numbers, count: int) -> tuple[Path, ...]:
         if self.path is not None:
             return (self.path,)
         return (moves(*sampled(joint, "angles", len(self.times), values, count)),)
@@ -71,7 +71,7 @@ class OnPath(JointTakeoff):
         """
         return self.path or moves(np.array(self.times), np.array(self.angles))
 
-    def begin(self, joint: Joint, values: Values, count: int) -> tuple[Array, Array]:
+    def begin(self, joint: Joint, values: Numbers, count: int) -> tuple[Array, Array]:
         (path,) = self.paths(joint, values, count)
         since, coefficients = path.at(np.zeros((count, 1)))
         angle, rate, _ = polynomial(-since, list(np.moveaxis(coefficients, -1, 0)))
@@ -80,7 +80,7 @@ class OnPath(JointTakeoff):
     def wanted(self, here: Here) -> list[Any]:
         return [here.paths[0][0]]
 
-    def sound(self, joint: Joint, values: Values, count: int) -> Array:
+    def sound(self, joint: Joint, values: Numbers, count: int) -> Array:
         good = super().sound(joint, values, count)
         return good & in_order(joint, len(self.times), values, count)
 

@@ -7,11 +7,11 @@ from typing import Any
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
-from somersault.flight._values import Name, Values
 from somersault.flight.behaviours import _declared
 from somersault.flight.behaviours._behaviour import JointTakeoff
 from somersault.flight.behaviours._moving import Moving, stretch
 from somersault.model import Joint
+from somersault.simulation import Name, Numbers
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class Sprung(Moving, motion="sprung"):
         fixed = self.hold or joint.kind == "ball"
         return {n: x for n, x in every.items() if n[0] != "rest" or not fixed}
 
-    def lasting(self, joint: Joint, values: Values, q: Array) -> Array:
+    def lasting(self, joint: Joint, values: Numbers, q: Array) -> Array:
         if self.hold:
             values = {**values, ("rest", joint.name): values["angle", joint.name]}
         return super().lasting(joint, values, q)

@@ -11,7 +11,6 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.checks import one_of
 from somersault._core.errors import SomersaultError
-from somersault.flight._values import Values
 from somersault.flight.behaviours import _declared
 from somersault.flight.behaviours._behaviour import JointTakeoff
 from somersault.flight.behaviours._here import Here
@@ -19,6 +18,7 @@ from somersault.flight.behaviours._moving import Moving
 from somersault.flight.behaviours._rows import in_order, sampled
 from somersault.model import Joint
 from somersault.motion import Path, check_rows, held, read_column, straight
+from somersault.simulation import Numbers
 
 _BETWEEN = {"straight": straight, "held": held}
 
@@ -72,7 +72,7 @@ class Torque(Moving, motion="torque"):
     def springs(self, joint: Joint) -> tuple[str, ...]:
         return ("stiffness", "rest", "torque")
 
-    def paths(self, joint: Joint, values: Values, count: int) -> tuple[Path, ...]:
+    def paths(self, joint: Joint, values: Numbers, count: int) -> tuple[Path, ...]:
         if not len(self.times):
             return (held(np.zeros(1), np.zeros(1)),)
         rows = sampled(joint, "torques", len(self.times), values, count)
@@ -82,7 +82,7 @@ class Torque(Moving, motion="torque"):
         (passive,) = super().acting(here)
         return [passive + here.numbers["torque"] + here.paths[0][0]]
 
-    def sound(self, joint: Joint, values: Values, count: int) -> Array:
+    def sound(self, joint: Joint, values: Numbers, count: int) -> Array:
         good = super().sound(joint, values, count)
         return good & in_order(joint, len(self.times), values, count)
 
