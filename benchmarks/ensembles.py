@@ -29,6 +29,7 @@ import numpy as np
 import somersault as so
 from somersault.engine import Integrator, cores, use_threads
 from somersault.ensembles import Plan, _cluster, _store, carried_out, plan
+from somersault.ensembles._begin import create
 from somersault.ensembles._carried_out import chunk_size
 from somersault.ensembles._chunks import chunked
 from somersault.flight import JointTakeoff, Takeoff, flights
@@ -188,7 +189,7 @@ def outside(count: int, folder: Path, most: int = 4) -> dict[str, float]:
     made = lifetimes(count)
     chunks = chunked(made.dims, chunk_size(made))
     store = folder / "outside.zarr"
-    _store.create(store, made, chunks)
+    create(store, made, chunks)
     made.run(0, 8)  # compiles
     watch, engine = Stopwatch(), made.simulation.batch.system.integrator
     engine.__dict__["_fly"] = watch.around("machine code", engine._fly)
@@ -285,7 +286,7 @@ def on_dask(workers: int, made: Plan, most: int, count: int, store: Path, seen: 
     `seen`: the workers write into the store. Otherwise rows travel back, and the program writes.
     """
     chunks = chunked(made.dims, most)
-    _store.create(store, made, chunks)
+    create(store, made, chunks)
     path = str(store) if seen else None
 
     def put(k: int, rows: Any) -> None:

@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from somersault._core.checks import text, truth, whole_number
-from somersault._core.datasets import netcdf
 from somersault._core.errors import SomersaultError
-from somersault._core.files import write as write_file
-from somersault.ensembles import _run, _store
+from somersault.ensembles import _netcdf, _run, _store
+from somersault.ensembles._begin import create
 from somersault.ensembles._chunks import Chunks, chunked
 from somersault.ensembles._memory import empty_dataset, run_bytes
 from somersault.ensembles._plan import Plan
@@ -66,7 +65,7 @@ def carried_out(
             from somersault.ensembles._cluster import check_scheduler
 
             check_scheduler(scheduler)
-        _store.create(file, plan, chunks)
+        create(file, plan, chunks)
         chunks = _store.resume(file, plan)  # which another program may have made meanwhile
     done = _store.finished(file, plan, chunks)
     left = [k for k in range(len(chunks)) if k not in done]
@@ -107,7 +106,7 @@ def _in_memory(
     every = list(range(len(chunks)))
     _run_chunks(plan, chunks, every, put, None, threads, workers, scheduler, shown)
     if file is not None:
-        write_file(file, netcdf(data))
+        _netcdf.save(data, file)
     return Ensemble(data)
 
 

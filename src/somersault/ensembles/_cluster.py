@@ -244,8 +244,4 @@ def _is_here(path: str, plan: Plan) -> bool:
 @lru_cache(maxsize=4)
 def _is_stored(path: str, created: int, plan: Plan) -> bool:
     """Whether the store `created` (ns) at a path is a plan's: read once for all chunks."""
-    try:
-        _store.resume(Path(path), plan)
-    except SomersaultError:
-        return False
-    return True
+    return _store.is_of(Path(path), plan)

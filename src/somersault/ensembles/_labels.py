@@ -10,7 +10,7 @@ from somersault.ensembles._plan import Plan
 from somersault.ensembles._vary import Vary
 from somersault.simulation import ENDED
 
-FORMAT = "somersault ensemble 1"
+FORMAT = "somersault ensemble 2"
 
 
 def attributes(plan: Plan) -> dict[str, Any]:

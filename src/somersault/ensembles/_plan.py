@@ -26,6 +26,7 @@ from somersault.simulation import ENDED, Name, Simulation, Target, Variable
 
 SAMPLE = "sample"
 OVER_TIME = "history_time"
+SEAL = "seal"  # what shows that a chunk of a store is whole
 MOST_RUNS = 10**11
 _MOST_SEED = 2**63 - 1
 _MOST_LISTED = 1_000
@@ -178,6 +179,17 @@ class Plan:
         """Versions of what computes: with others the last digits may be others."""
         return versions(self.simulation.packages)
 
+    @cached_property
+    def digest(self) -> str:
+        """Of all that decides the numbers to the last digit."""
+        return digest_of(self.specification, self.versions)
+
+
+def digest_of(specification: Any, versions: Any) -> str:
+    """The digest of what decides an ensemble's numbers: plain data, however they were kept."""
+    text = json.dumps([specification, versions], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()
+
 
 def _vary_as_data(vary: Vary) -> Any:
     """Numbers one by one, however they were given; the digest of very many."""
@@ -262,7 +274,7 @@ def _check_name(name: str, simulation: Simulation) -> None:
         raise SomersaultError(
             f"vary.{name!r} is no name for a quantity; names are of letters, digits, _ and -"
         )
-    if name in (SAMPLE, OVER_TIME, ENDED):
+    if name in (SAMPLE, OVER_TIME, ENDED, SEAL):
         raise SomersaultError(f"vary.{name}: that name is taken; call the quantity otherwise")
     if name in simulation.variables:
         raise SomersaultError(

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from somersault._core.errors import SomersaultError
-from somersault.ensembles import _store
+from somersault.ensembles import _netcdf, _store
+from somersault.ensembles._metadata import require_whole
 from somersault.simulation import ENDED
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ class Ensemble:
         Raises
         ------
         SomersaultError
-            Where there is none.
+            Where there is none, and where one is damaged.
 
         Examples
         --------
@@ -57,6 +58,9 @@ class Ensemble:
         file = store_path("path", path)
         if not file.exists():
             raise SomersaultError(f"there is no ensemble {str(path)!r}; check the path")
+        if file.suffix.lower() == ".nc":
+            return Ensemble(_netcdf.read(file))
+        require_whole(file)
         return Ensemble(_store.opened(file))
 
     def fraction(

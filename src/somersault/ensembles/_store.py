@@ -1,17 +1,12 @@
 """Ensembles on disk: a Zarr store that fills chunk by chunk and can be left at any moment.
 
-Every chunk of every variable is a file that is written under another name and then renamed: a
-chunk is finished when all its files are there, and whole. Nothing else is kept account of, so
-there is nothing that could disagree, and what is lost is run again.
+Every chunk of every variable is a file that is written under another name and then renamed. A chunk
+is finished when its seal is there and fits: what is lost, or is not what was written, is run again.
 """
 
 from __future__ import annotations
 
 import json
-import math
-import os
-import shutil
-import tempfile
 import time
 import warnings
 from collections.abc import Mapping
@@ -23,97 +18,62 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError, SomersaultWarning
-from somersault._core.files import umask
 from somersault.engine import processor
+from somersault.ensembles._begin import write_anew
 from somersault.ensembles._chunks import Chunks
-from somersault.ensembles._labels import (
-    FORMAT,
-    attributes,
-    coordinate_attributes,
-    variable_attributes,
+from somersault.ensembles._metadata import (
+    GROUP,
+    DamagedMetadataError,
+    chunk_of_array,
+    coordinates_are_whole,
+    damaged_arrays,
+    fixed_coordinates,
+    read_metadata,
 )
-from somersault.ensembles._plan import OVER_TIME, SAMPLE, Plan
+from somersault.ensembles._plan import SAMPLE, SEAL, Plan
+from somersault.ensembles._seals import brings_samples, seals_of_plan
+from somersault.simulation import ENDED
 
 if TYPE_CHECKING:
     import xarray as xr
-    import zarr
 
 _STALE = 60.0  # s after which a half-written file is nobody's
 
 
-def create(path: Path, plan: Plan, chunks: Chunks) -> None:
-    """An empty store for a plan, there as a whole or not at all."""
-    import zarr
-
-    path.parent.mkdir(parents=True, exist_ok=True)
-    fresh = Path(tempfile.mkdtemp(dir=path.parent, prefix=f".{path.name}."))
-    try:
-        group = zarr.create_group(store=str(fresh))
-        group.attrs.put(_store_attributes(plan, chunks))
-        _create_variables(group, plan, chunks)
-        _create_coordinates(group, plan, chunks)
-        with warnings.catch_warnings():  # that the metadata in one piece are zarr's own addition
-            warnings.simplefilter("ignore")
-            zarr.consolidate_metadata(group.store)
-        fresh.chmod(0o777 & ~umask())
-        try:
-            os.rename(fresh, path)
-        except OSError:
-            if not path.is_dir():
-                raise
-            shutil.rmtree(fresh, ignore_errors=True)  # another program was quicker
-    except BaseException:
-        shutil.rmtree(fresh, ignore_errors=True)
-        raise
-
-
-def _create_variables(group: zarr.Group, plan: Plan, chunks: Chunks) -> None:
-    lengths, samples = tuple(chunks.dims.values()), len(plan.simulation.times)
-    for name, v in plan.variables.items():
-        dims, shape, chunk = tuple(chunks.dims), lengths, chunks.shape
-        if v.over_time:
-            dims, shape, chunk = (*dims, OVER_TIME), (*shape, samples), (*chunk, samples)
-        array = _create_array(group, name, v.dtype, shape, chunk, dims, v.fill)
-        array.attrs.put(variable_attributes(plan, name))
-
-
-def _create_coordinates(group: zarr.Group, plan: Plan, chunks: Chunks) -> None:
-    for name, vary in plan.vary.items():
-        dim = name if name in chunks.dims else SAMPLE
-        length = chunks.shape[list(chunks.dims).index(dim)]
-        shape = (chunks.dims[dim],)
-        array = _create_array(group, name, "f8", shape, (length,), (dim,), np.nan)
-        array.attrs.put(coordinate_attributes(vary))
-        if vary.grid is not None:
-            array[:] = vary.grid
-    times = plan.simulation.times
-    if len(times):
-        shape = times.shape
-        array = _create_array(group, OVER_TIME, "f8", shape, shape, (OVER_TIME,), np.nan)
-        array.attrs.put({"units": "s"})
-        array[:] = times
-
-
-def _create_array(
-    group: zarr.Group, name: str, dtype: str, shape: tuple[int, ...], chunk: tuple[int, ...],
-    dims: tuple[str, ...], fill: Any,
-) -> zarr.Array:  # fmt: skip
-    return group.create_array(
-        name, shape=shape, chunks=chunk, dtype=dtype, fill_value=fill, dimension_names=dims,
-        compressors=None,  # digits do not shrink, and a whole file is known by its size
-    )  # fmt: skip
-
-
-def _store_attributes(plan: Plan, chunks: Chunks) -> dict[str, Any]:
-    along = plan.along_samples
-    more: dict[str, Any] = {"coordinates": " ".join(along)} if along else {}
-    own = {"variables": list(plan.variables), "chunk": list(chunks.shape)}
-    return {**attributes(plan), **own, **more}
-
-
 def resume(path: Path, plan: Plan) -> Chunks:
-    """The chunks of a store that is this plan's; SomersaultError for any other."""
-    attrs = _read_attributes(path)
+    """The chunks of a store that is this plan's; SomersaultError for any other.
+
+    What else than chunks is damaged in it is written anew, with a warning.
+    """
+    names: list[str] | None = None  # arrays to write anew; None: the group too
+    try:
+        metadata = read_metadata(path)
+    except DamagedMetadataError:
+        chunks = _surviving_chunks(path, plan)
+    else:
+        chunks = _chunks_of(path, plan, metadata)
+        names = damaged_arrays(path, metadata)
+        if not coordinates_are_whole(path, metadata):
+            names = sorted({*names, *fixed_coordinates(metadata)})
+    if names is None or names:
+        write_anew(path, plan, chunks, names)
+        what = "metadata" if names is None else f"what it says of {', '.join(names)}"
+        _warn(f"{path} was damaged ({what}), and has been mended")
+    return chunks
+
+
+def is_of(path: Path, plan: Plan) -> bool:
+    """Whether a store is this plan's."""
+    try:
+        _chunks_of(path, plan, read_metadata(path))
+    except SomersaultError:
+        return False
+    return True
+
+
+def _chunks_of(path: Path, plan: Plan, metadata: dict[str, Any]) -> Chunks:
+    """The chunks of a store, if its metadata are this plan's."""
+    attrs = metadata["attributes"]
     theirs, ours = json.loads(attrs["specification"]), json.loads(json.dumps(plan.specification))
     if theirs != ours:
         key = _difference(theirs, ours)
@@ -131,31 +91,31 @@ def resume(path: Path, plan: Plan) -> Chunks:
     return Chunks(plan.dims, tuple(attrs["chunk"]))
 
 
+def _surviving_chunks(path: Path, plan: Plan) -> Chunks:
+    """The chunks of a store whose metadata are lost, if seals show that it is this plan's."""
+    shape = chunk_of_array(path / ENDED)
+    if shape is not None and len(shape) == len(plan.dims):
+        chunks = Chunks(plan.dims, shape)
+        if seals_of_plan(path, plan, chunks).check()[0]:
+            return chunks
+    raise SomersaultError(
+        f"{path / GROUP} is damaged, and nothing else shows that {path} is of this specification; "
+        "give another --out, or remove it"
+    )
+
+
 def note_processor(path: Path) -> None:
     """Warn where a store was begun on another kind of processor than this one."""
-    begun = _read_attributes(path).get("processor")
+    begun = read_metadata(path)["attributes"]["processor"]
     if begun != processor():
-        where = f"on {begun}" if begun else "by a version that did not record its processor"
-        warnings.warn(
-            f"{path} was begun {where}, and this is {processor()}: the last digits of what is "
-            "run now may differ; go on there, or begin another, if they matter",
-            SomersaultWarning,
-            stacklevel=2,
+        _warn(
+            f"{path} was begun on {begun}, and this is {processor()}: the last digits of what is "
+            "run now may differ; go on there, or begin another, if they matter"
         )
 
 
-def _read_attributes(path: Path) -> dict[str, Any]:
-    import zarr
-
-    try:
-        attrs: dict[str, Any] = dict(zarr.open_group(str(path), mode="r").attrs)
-        if attrs.get("format") != FORMAT:
-            raise KeyError
-        json.loads(attrs["specification"]), json.loads(attrs["versions"])
-        list(attrs["chunk"]), list(attrs["variables"])
-    except (OSError, ValueError, KeyError, TypeError):
-        raise SomersaultError(f"{path} is there, but is no ensemble; give another --out") from None
-    return attrs
+def _warn(message: str) -> None:
+    warnings.warn(message, SomersaultWarning, stacklevel=3)
 
 
 def _difference(theirs: Any, ours: Any, key: str = "") -> str:
@@ -168,44 +128,16 @@ def _difference(theirs: Any, ours: Any, key: str = "") -> str:
 
 
 def finished(path: Path, plan: Plan, chunks: Chunks) -> set[int]:
-    """Numbers of the chunks that are complete: every variable's file there, and whole."""
-    complete = set(range(len(chunks)))
-    samples, depth = len(plan.simulation.times), len(chunks.grid)
-    for name, v in plan.variables.items():
-        each = np.dtype(v.dtype).itemsize * (samples if v.over_time else 1)
-        places = _files(path / name / "c", each * math.prod(chunks.shape))
-        complete &= {int(np.ravel_multi_index(p[:depth], chunks.grid)) for p in places}
-    along = plan.along_samples
-    if along:
-        at = list(chunks.dims).index(SAMPLE)
-        there = [_files(path / name / "c", 8 * chunks.shape[at]) for name in along]
-        known = {p[0] for p in set.intersection(*there)}
-        bringing = {k for k in complete if _brings_samples(chunks, k)}
-        complete -= {k for k in bringing if chunks.place(k)[at] not in known}
+    """Numbers of the chunks that are complete and whole; a warning says how many are damaged."""
+    complete, damaged = seals_of_plan(path, plan, chunks).check()
+    if damaged:
+        were = "chunk was" if len(damaged) == 1 else "chunks were"
+        _warn(f"{len(damaged):,} {were} damaged in {path}: run again")
     return complete
 
 
-def _files(root: Path, size: int) -> set[tuple[int, ...]]:
-    """Places of the chunk files below a folder that have a size, bytes."""
-    places = set()
-    for folder, _, files in os.walk(root):
-        ahead = Path(folder).relative_to(root).parts
-        for file in files:
-            place = (*ahead, file)
-            whole = os.path.getsize(os.path.join(folder, file)) == size
-            if whole and all(p.isdecimal() for p in place):
-                places.add(tuple(int(p) for p in place))
-    return places
-
-
-def _brings_samples(chunks: Chunks, k: int) -> bool:
-    """Whether chunk k writes what is drawn: the first for its samples, by all other dimensions."""
-    pairs = zip(chunks.dims, chunks.place(k), strict=True)
-    return SAMPLE in chunks.dims and not any(i for dim, i in pairs if dim != SAMPLE)
-
-
 def write(path: Path, plan: Plan, chunks: Chunks, k: int, rows: Mapping[str, Array]) -> None:
-    """The variables of chunk k into the store, `ended` last."""
+    """The variables of chunk k into the store, its seal last."""
     try:
         _write(path, plan, chunks, k, rows)
     except OSError as trouble:  # of a full disk, which does not say of which file
@@ -213,14 +145,16 @@ def write(path: Path, plan: Plan, chunks: Chunks, k: int, rows: Mapping[str, Arr
 
 
 def _write(path: Path, plan: Plan, chunks: Chunks, k: int, rows: Mapping[str, Array]) -> None:
-    arrays = _arrays(str(path), (path / "zarr.json").stat().st_mtime_ns)
+    arrays = _arrays(str(path), (path / GROUP).stat().st_mtime_ns)
     region = chunks.region(k)
-    if _brings_samples(chunks, k):
+    if brings_samples(chunks, k):
         along = region[list(chunks.dims).index(SAMPLE)]
         for name, values in plan.drawn(np.arange(along.start, along.stop)).items():
             arrays[name][along] = values
     for name in plan.variables:
         arrays[name][region] = as_block(rows[name], region)
+    seal = seals_of_plan(path, plan, chunks).seal(k)
+    arrays[SEAL][chunks.place(k)] = np.frombuffer(seal, np.uint8)
 
 
 def as_block(values: Array, region: tuple[slice, ...]) -> Array:
@@ -253,22 +187,8 @@ def opened(path: Path) -> xr.Dataset:
     """The dataset of a store, read as it is used; what is not run yet is NaN (`ended` 255)."""
     import xarray as xr
 
-    if path.suffix.lower() == ".nc":
-        return _read_netcdf(path)
-    names = _read_attributes(path)["variables"]
     data = xr.open_zarr(str(path), chunks=None)
-    for name in ("variables", "chunk"):  # of the store, not of the data
+    names = data.attrs["variables"]
+    for name in ("variables", "chunk", "fixed", "digest"):  # of the store, not of the data
         data.attrs.pop(name)
     return data[names]
-
-
-def _read_netcdf(path: Path) -> xr.Dataset:
-    import xarray as xr
-
-    try:
-        with xr.open_dataset(path, engine="h5netcdf") as data:
-            if data.attrs.get("format") == FORMAT:
-                return data.load()
-    except (OSError, ValueError):
-        pass
-    raise SomersaultError(f"{path} is there, but is no ensemble")
