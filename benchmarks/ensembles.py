@@ -32,6 +32,7 @@ from somersault.ensembles import Plan, _cluster, _store, carried_out, plan
 from somersault.ensembles._begin import create
 from somersault.ensembles._carried_out import chunk_size
 from somersault.ensembles._chunks import chunked
+from somersault.ensembles._seals import Seals
 from somersault.flight import JointTakeoff, Takeoff, flights
 from somersault.stability import spin as steady_spin
 
@@ -195,7 +196,8 @@ def outside(count: int, folder: Path, most: int = 4) -> dict[str, float]:
     engine.__dict__["_fly"] = watch.around("machine code", engine._fly)
     plain = Integrator.solve
     Integrator.solve = watch.around("solve", plain)  # type: ignore[method-assign]
-    write = watch.around("written", _store.write)
+    write, seal = watch.around("written", _store.write), Seals.seal
+    Seals.seal = watch.around("sealed", seal)  # type: ignore[method-assign]
     # Chunks spread over the map: some fall early, some last.
     which = np.linspace(0, len(chunks) - 1, min(most, len(chunks))).astype(int)
     begun = time.process_time()
@@ -204,7 +206,7 @@ def outside(count: int, folder: Path, most: int = 4) -> dict[str, float]:
             for k in which:
                 write(store, made, chunks, int(k), made.run(*chunks.runs(int(k))))
     finally:
-        Integrator.solve = plain  # type: ignore[method-assign]
+        Integrator.solve, Seals.seal = plain, seal  # type: ignore[method-assign]
         del engine.__dict__["_fly"]
     whole = time.process_time() - begun
     flown = sum(chunks.size(int(k)) for k in which)
@@ -214,6 +216,7 @@ def outside(count: int, folder: Path, most: int = 4) -> dict[str, float]:
         "outside_machine_code": 1 - watch.seconds["machine code"] / whole,
         "outside_solve": 1 - watch.seconds["solve"] / whole,
         "writing": watch.seconds["written"] / whole,
+        "sealing": watch.seconds["sealed"] / whole,
         "written_seconds_a_chunk": watch.seconds["written"] / len(which),
     }  # fmt: skip
 
@@ -469,7 +472,8 @@ def main() -> None:
                     f"{row['seconds_a_flight'] * 1e6:.1f} us a flight: "
                     f"{100 * row['outside_machine_code']:.1f} % outside machine code, "
                     f"{100 * row['outside_solve']:.1f} % outside `Integrator.solve`; writing "
-                    f"{100 * row['writing']:.1f} %, {row['written_seconds_a_chunk'] * 1e3:.0f} ms "
+                    f"{100 * row['writing']:.1f} %, of which seals "
+                    f"{100 * row['sealing']:.1f} %, {row['written_seconds_a_chunk'] * 1e3:.0f} ms "
                     f"a chunk (aim: less than 5 %); load {load()}",
                     flush=True,
                 )
