@@ -9,18 +9,16 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import instance
+from somersault._core.checks import file_path, instance
 from somersault._core.errors import SomersaultError
+from somersault._core.numbers import floats
 from somersault.attitude import unwrapped_angles
 from somersault.model import Model
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _VARIABLES = ("base_position", "quaternion", "joint_angle", "somersault", "tilt", "twist")
 _UNIT = 1e-6  # how far the length of a quaternion may be from 1
@@ -100,7 +98,7 @@ class Recording:
 
     def __post_init__(self) -> None:
         instance("model", self.model, Model)
-        count = np.size(self.times)
+        count = floats("times of a recording", self.times).size
         shapes = {
             "times": (count,),
             "base_position": (count, 3),
@@ -143,10 +141,7 @@ def summary(history: History) -> str:
 
 
 def _numbers(name: str, values: object, shape: tuple[int, ...]) -> Array:
-    try:
-        array = np.asarray(values, float)
-    except (TypeError, ValueError):
-        raise SomersaultError(f"{name} of a recording must be numbers") from None
+    array = floats(f"{name} of a recording", values)
     if array.shape != shape:
         wanted = " x ".join(map(str, shape))
         given = " x ".join(map(str, array.shape)) or "one number"
@@ -183,39 +178,46 @@ def read_recording(path: str | os.PathLike[str], model: Model) -> Recording:
     Recording of furrer: 201 samples, 0 to 1 s
     """
     instance("model", model, Model)
-    file = Path(path)
+    file = file_path("path", path)
     data = _opened(file)
-    missing = [name for name in _VARIABLES if name not in data]
-    if missing or "time" not in data:
+    if data["joint"] != model.coordinates:
         raise SomersaultError(
-            f"{file.name} holds no flight: it has no {', '.join(missing) or 'time'}; give a file "
-            "that Flight.save wrote"
-        )
-    joints = tuple(str(name) for name in data["joint"].values)
-    if joints != model.coordinates:
-        raise SomersaultError(
-            f"{file.name} is of {data.attrs.get('model', 'a model')} with {len(joints)} joint "
-            f"coordinates, which are not those of {model.name}; give the model that flew"
+            f"{file.name} is of a model with {len(data['joint'])} joint coordinates, which are not "
+            f"those of {model.name}; give the model that flew"
         )
     return Recording(
         model,
-        data["time"].values,
-        data["base_position"].values,
-        data["quaternion"].values,
-        data["joint_angle"].values,
-        np.stack([data[name].values for name in ("somersault", "tilt", "twist")], -1),
+        data["time"],
+        data["base_position"],
+        data["quaternion"],
+        data["joint_angle"],
+        np.stack([data[name] for name in ("somersault", "tilt", "twist")], -1),
     )
 
 
-def _opened(file: Path) -> xr.Dataset:
-    import xarray as xr
+def _opened(file: Path) -> dict[str, Any]:
+    """The variables of a flight's NetCDF file, and the names of its `joint` coordinates.
+
+    They are read as plain HDF5: where dimension scales are damaged, HDF5 goes round in circles.
+    """
+    import h5py
 
     if not os.path.isfile(file):
         raise SomersaultError(f"there is no file {str(file)!r}; check the path")
     try:
-        return xr.load_dataset(file, engine="h5netcdf")
+        with h5py.File(file) as data:
+            missing = [name for name in (*_VARIABLES, "time", "joint") if name not in data]
+            read = {name: data[name][()] for name in (*_VARIABLES, "time") if not missing}
+            if not missing:
+                read["joint"] = tuple(data["joint"].asstr()[()].tolist())
     except Exception as error:  # whatever HDF5 meets in bytes that are not its own
         reason = " ".join(str(error).split()).rstrip(".")[:200] or type(error).__name__
         raise SomersaultError(
             f"{file.name} cannot be read as NetCDF: {reason}; give a .nc that Flight.save wrote"
         ) from None
+    if missing:
+        raise SomersaultError(
+            f"{file.name} holds no flight: it has no {', '.join(missing)}; give a file that "
+            "Flight.save wrote"
+        )
+    return read

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
@@ -15,7 +17,10 @@ _SHOWN = 200  # characters of a mistaken value
 
 def shown(value: Any) -> str:
     """A mistaken value in a line that can be read."""
-    text = " ".join(repr(value).split())
+    try:
+        text = " ".join(repr(value).split())
+    except Exception:  # an integer of more digits than Python writes; a repr that is not ours
+        text = f"{type(value).__name__} that cannot be written out"
     return text if len(text) <= _SHOWN else f"{text[:_SHOWN]} …"
 
 
@@ -39,6 +44,17 @@ def text(what: str, value: Any) -> str:
     if not isinstance(value, str):
         raise SomersaultError(f"{what} must be a text, and is {shown(value)}")
     return value
+
+
+def file_path(what: str, value: Any) -> Path:
+    """A path; SomersaultError naming `what` for what can be none."""
+    try:
+        name = os.fspath(value)
+    except TypeError:
+        name = ""
+    if not isinstance(name, str) or "\0" in name or not name:
+        raise SomersaultError(f"{what} must be the path of a file, and is {shown(value)}")
+    return Path(name)
 
 
 def whole_number(what: str, value: Any, least: int, most: int) -> int:
@@ -69,6 +85,19 @@ def name_list(what: str, value: Any) -> tuple[str, ...]:
     if not all(isinstance(name, str) for name in row):
         raise SomersaultError(f"{what} must be a list of names, and is {shown(value)}")
     return row
+
+
+def list_of(what: str, value: Any, kind: type[T]) -> list[T]:
+    """Values of some class; SomersaultError naming `what`, for one of them alone too."""
+    try:
+        things = list(value)
+    except TypeError:
+        things = [None]
+    if not all(isinstance(thing, kind) for thing in things):
+        raise SomersaultError(
+            f"{what} must be a list of somersault.{kind.__name__}, and is {shown(value)}"
+        )
+    return things
 
 
 def instance(what: str, value: Any, kind: type[T]) -> T:

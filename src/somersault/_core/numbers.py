@@ -27,11 +27,19 @@ def number(what: str, value: Any) -> float:
     return result
 
 
+def as_floats(value: Any) -> Array | None:
+    """An array of floats, None for what holds anything but real numbers."""
+    try:
+        array = np.asarray(value)
+        return None if array.dtype.kind in "cmMSUV" else array.astype(float, copy=False)
+    except Exception:  # whatever a user's own class does when it is asked for numbers
+        return None
+
+
 def numbers(what: str, value: Any, size: int | None = None, most: float = MOST) -> Array:
     """A row of finite floats, of `size` if that is given, none beyond `most`."""
-    try:
-        result = np.asarray(value, float)
-    except (TypeError, ValueError, OverflowError):
+    result = as_floats(value)
+    if result is None:
         result = np.array(np.nan)
     wanted = "a row of" if size is None else str(size)
     if result.ndim != 1 or (size is not None and result.shape != (size,)):
@@ -43,10 +51,9 @@ def numbers(what: str, value: Any, size: int | None = None, most: float = MOST) 
 
 def floats(what: str, value: Any, *ends: int) -> Array:
     """Floats of any shape, (…, *ends); SomersaultError naming `what`. They need not be finite."""
-    try:
-        result = np.asarray(value, float)
-    except (TypeError, ValueError, OverflowError):
-        raise SomersaultError(f"{what} must be numbers, and is {shown(value)}") from None
+    result = as_floats(value)
+    if result is None:
+        raise SomersaultError(f"{what} must be numbers, and is {shown(value)}")
     if ends and result.shape[-len(ends) :] != ends:
         shape = ", ".join(map(str, ends))
         raise SomersaultError(f"{what} has shape {result.shape}, and must end in ({shape})")

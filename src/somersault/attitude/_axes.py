@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence, Set
 from itertools import permutations
 from typing import Any
 
@@ -102,6 +102,7 @@ def in_sequence(vector: Sequence[Any], axes: Axes) -> list[Any]:
     [1.0, -3.0, 2.0]
     """
     a, b, c = as_axes(axes)
+    _require_three(vector)
     return [vector[b - 1], side(axes) * vector[a - 1], vector[c - 1]]
 
 
@@ -126,5 +127,15 @@ def from_sequence(vector: Sequence[Any], axes: Axes) -> list[Any]:
     [1.0, 2.0, 3.0]
     """
     a, b, c = as_axes(axes)
+    _require_three(vector)
     along = {b: vector[0], a: side(axes) * vector[1], c: vector[2]}
     return [along[axis] for axis in (1, 2, 3)]
+
+
+def _require_three(vector: Sequence[Any]) -> None:
+    try:
+        count = len(vector)
+    except TypeError:
+        count = 0
+    if count != 3 or isinstance(vector, str | bytes | Mapping | Set):
+        raise SomersaultError(f"a vector has three components, and this is {shown(vector)}")

@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
+from somersault._core.checks import instance
 from somersault._core.errors import SomersaultError
+from somersault._core.numbers import floats
 from somersault.dynamics._parameters import parameter_values
 from somersault.dynamics._symbolic import Expression, SymbolicEquations
 from somersault.engine import Kernel
@@ -96,6 +98,7 @@ class Equations(SymbolicEquations):
         >>> equations.kernel(equations.expression("mass_matrix")).outputs  # 8 × 8
         64
         """
+        instance("expression", expression, Expression)
         if expression not in self._kernels:
             arguments = list(expression.arguments.values())
             flat = ca.cse(ca.densify(ca.vec(expression.value.T)))
@@ -130,6 +133,7 @@ class Equations(SymbolicEquations):
         >>> equations.evaluate(inertia, q=[1.4, -1.4]).shape
         (3, 3)
         """
+        instance("expression", expression, Expression)
         for name in arguments:
             if name not in expression.arguments:
                 raise SomersaultError(
@@ -139,10 +143,7 @@ class Equations(SymbolicEquations):
         kernel = self.kernel(expression)
         arrays = []
         for name, width in zip(expression.arguments, kernel.widths, strict=True):
-            try:
-                array = np.asarray(arguments.get(name, np.zeros(width)), float)
-            except (TypeError, ValueError):
-                raise SomersaultError(f"{expression.name}: {name} must be numbers") from None
+            array = floats(f"{expression.name}: {name}", arguments.get(name, np.zeros(width)))
             if array.shape[-1:] != (width,):
                 raise SomersaultError(
                     f"{expression.name}: {name} has shape {array.shape}, but its last dimension "

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from somersault._core.checks import instance, text
 from somersault.model import Body, Model
 
 _OF_A_BODY = re.compile(r"bodies\..+\.(mass|com|inertia|position)(?:\.\d+)?")
@@ -39,7 +40,7 @@ def body_kind(name: str) -> str | None:
     str or None
         "mass", "com", "inertia" or "position"; None for a name of anything else.
     """
-    match = _OF_A_BODY.fullmatch(name)
+    match = _OF_A_BODY.fullmatch(text("name", name))
     return None if match is None else match[1]
 
 
@@ -56,6 +57,7 @@ def parameter_values(model: Model) -> dict[str, float]:
     dict
         From names such as "bodies.torso.mass" to the numbers that the model has, in SI units.
     """
+    instance("model", model, Model)
     values = {
         body_parameter(body.name, kind, part): value
         for body, kind, part, value in body_numbers(model)

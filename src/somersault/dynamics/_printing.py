@@ -11,6 +11,7 @@ from typing import Any
 
 import casadi as ca
 
+from somersault._core.checks import instance
 from somersault._core.errors import SomersaultError
 from somersault.dynamics._equations import Equations
 from somersault.dynamics._newton_euler import inverse_dynamics
@@ -76,7 +77,7 @@ def latex(model: Model) -> str:
     SomersaultError
         For a model with more joints than anyone would read, or with ball joints.
     """
-    joints = len(model.joints)
+    joints = len(instance("model", model, Model).joints)
     if joints > MOST_JOINTS or any(joint.kind == "ball" for joint in model.joints):
         raise SomersaultError(
             f"the LaTeX of {model.name} would fill pages ({joints} joints); models of up to "

@@ -16,7 +16,7 @@ from typing import Any
 
 import casadi as ca
 
-from somersault._core.checks import name_list
+from somersault._core.checks import name_list, shown, text
 from somersault._core.errors import SomersaultError
 from somersault.dynamics import _composite, _springs
 from somersault.dynamics._articulated import forward_dynamics
@@ -74,7 +74,7 @@ class SymbolicEquations:
         for name in self.parameters:
             if name not in known:
                 raise SomersaultError(
-                    f"{model.name} has no parameter {name!r}; parameters are bodies.BODY.mass, "
+                    f"{model.name} has no parameter {shown(name)}; those are bodies.BODY.mass, "
                     "bodies.BODY.com.1, bodies.BODY.position.1, bodies.BODY.inertia.12, "
                     "joints.JOINT.stiffness, joints.JOINT.rest and joints.JOINT.damping"
                 )
@@ -138,9 +138,9 @@ class SymbolicEquations:
         >>> so.Equations("furrer").expression("mass_matrix").value.shape
         (8, 8)
         """
-        if name not in self.QUANTITIES:
+        if text("name", name) not in self.QUANTITIES:
             raise SomersaultError(
-                f"no quantity is called {name!r}; there are {', '.join(self.QUANTITIES)}"
+                f"no quantity is called {shown(name)}; there are {', '.join(self.QUANTITIES)}"
             )
         if name not in self._expressions:
             arguments, value = getattr(self, f"_{name}")()
@@ -176,9 +176,9 @@ class SymbolicEquations:
         (8, 2)
         """
         expression = self.expression(name)
-        if argument not in expression.arguments:
+        if text("argument", argument) not in expression.arguments:
             raise SomersaultError(
-                f"{name} does not depend on {argument!r}; it takes "
+                f"{name} does not depend on {shown(argument)}; it takes "
                 f"{', '.join(expression.arguments)}"
             )
         flat = ca.vec(expression.value.T)

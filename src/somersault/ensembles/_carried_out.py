@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from somersault._core.checks import text, truth, whole_number
+from somersault._core.checks import instance, text, truth, whole_number
 from somersault._core.errors import SomersaultError
 from somersault.ensembles import _netcdf, _run, _store
 from somersault.ensembles._begin import create
@@ -46,6 +47,7 @@ def carried_out(
     SomersaultError
         For what does not fit, and for a store of another specification.
     """
+    instance("plan", plan, Plan)
     for what, value in (("chunk", chunk), ("threads", threads), ("workers", workers)):
         if value is not None:
             whole_number(what, value, 1, _MOST)
@@ -58,7 +60,7 @@ def carried_out(
     chunks = chunked(plan.dims, chunk or chunk_size(plan))
     if file is None or file.suffix.lower() == ".nc":
         return _in_memory(plan, chunks, file, threads, workers, scheduler, progress)
-    if file.exists():
+    if os.path.exists(file):
         chunks = _store.resume(file, plan)
     else:
         if scheduler is not None:  # before anything is written

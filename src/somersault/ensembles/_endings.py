@@ -53,7 +53,8 @@ def failed(ended: xr.DataArray) -> xr.DataArray:
     >>> so.ensembles.failed(found.dataset["ended"]).values
     array([False, False])
     """
-    return ended.isin(failure_codes(ended))
+    codes = failure_codes(ended)
+    return ended.isin(codes)
 
 
 def ended_by(ended: xr.DataArray, ending: str) -> xr.DataArray:

@@ -109,6 +109,8 @@ def landing_derivatives(
     import xarray as xr
 
     landing, takeoff = name_list("of", of), name_list("to", to)
+    if not landing or not takeoff:
+        raise SomersaultError("of and to name nothing; name what is looked at, and what is changed")
     if number("step", step) <= 0:
         raise SomersaultError(f"step {step:g} is no step; give a positive number")
     changes = np.kron(np.eye(len(takeoff)), [step, -step])

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import by_name, instance, whole_number
+from somersault._core.checks import by_name, instance, shown, whole_number
 from somersault._core.errors import SomersaultError
 from somersault._core.plain import plain
 from somersault.ensembles import _vary
@@ -107,6 +107,8 @@ class Plan:
         -------
         dict of str to ndarray, (last − first,)
         """
+        first = whole_number("first", first, 0, self.count)
+        last = whole_number("last", last, first, self.count)
         dims = self.dims
         at = dict(
             zip(dims, np.unravel_index(np.arange(first, last), tuple(dims.values())), strict=True)
@@ -237,16 +239,20 @@ def plan(
     >>> so.ensembles.plan(so.flight.flights("furrer"), vary, size=64).dims
     {'sample': 64}
     """
+    if not isinstance(simulation, Simulation):
+        raise SomersaultError(
+            f"{shown(simulation)} is nothing that can be run; give somersault.flight.flights(…)"
+        )
     varied = {n: instance(f"vary.{n}", v, Vary) for n, v in by_name("vary", vary).items()}
+    for name, quantity in varied.items():
+        _check_name(name, simulation)
+        _vary.check(name, quantity)
     seed = whole_number("sample.seed", seed, 0, _MOST_SEED)
     if size is not None:
         size = whole_number("sample.size", size, 1, MOST_RUNS)
     else:
         listed = [len(v.samples) for v in varied.values() if v.samples is not None]
         size = listed[0] if listed else 1
-    for name, quantity in varied.items():
-        _check_name(name, simulation)
-        _vary.check(name, quantity)
     targets = {name: moved_by(simulation, name, v) for name, v in varied.items()}
     check_apart(varied, targets)
     numbers: dict[Name, None] = {t.name: None for group in targets.values() for t in group}
@@ -286,7 +292,7 @@ def _check_sample(planned: Plan) -> None:
     size, sequence = planned.size, planned.sequence
     if not isinstance(sequence, str) or sequence not in _vary.SEQUENCES:
         raise SomersaultError(
-            f"sample.sequence {sequence!r} is none; use {', '.join(_vary.SEQUENCES)}"
+            f"sample.sequence {shown(sequence)} is none; use {', '.join(_vary.SEQUENCES)}"
         )
     drawn = [name for name, v in planned.vary.items() if v.distribution is not None]
     if size > 1 and not planned.along_samples:

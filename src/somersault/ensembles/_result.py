@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError
 from somersault.ensembles import _netcdf, _store
 from somersault.ensembles._metadata import require_whole
@@ -56,7 +58,7 @@ class Ensemble:
         {'sample': 4}
         """
         file = store_path("path", path)
-        if not file.exists():
+        if not os.path.exists(file):  # which, unlike pathlib, takes any name
             raise SomersaultError(f"there is no ensemble {str(path)!r}; check the path")
         if file.suffix.lower() == ".nc":
             return Ensemble(_netcdf.read(file))
@@ -226,8 +228,8 @@ class Ensemble:
 
 def store_path(what: str, given: str | Path) -> Path:
     """The path of a store or a NetCDF file; SomersaultError naming `what` for what is none."""
-    if not isinstance(given, str | Path) or not str(given):
+    if not isinstance(given, str | Path) or str(given) in ("", ".") or "\0" in str(given):
         raise SomersaultError(
-            f"{what} must be the path of a Zarr store or of a .nc file, and is {given!r}"
+            f"{what} must be the path of a Zarr store or of a .nc file, and is {shown(given)}"
         )
     return Path(given)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, get_type_hints
 
+from somersault._core.checks import file_path, shown
 from somersault._core.errors import SomersaultError
 from somersault.ensembles._plan import Plan, plan
 from somersault.ensembles._vary import Vary
@@ -78,7 +79,8 @@ def read_ensemble(path: Path) -> EnsembleSpec:
     SomersaultError
         Naming the key, for what does not fit.
     """
-    return parse_ensemble(read_toml(path), path.parent)
+    file = file_path("a SPEC", path)
+    return parse_ensemble(read_toml(file), file.parent)
 
 
 def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
@@ -100,6 +102,8 @@ def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
     SomersaultError
         Naming the key, for what does not fit.
     """
+    if not isinstance(given, Mapping):
+        raise SomersaultError(f"a SPEC is a table of keys, and not {shown(given)}")
     for key in _TABLES:
         if not isinstance(given.get(key, {}), Mapping):
             raise SomersaultError(f"{key} must be a table; write [{key}]")

@@ -10,7 +10,7 @@ import numpy as np
 from scipy import special
 
 from somersault._core.array import Array
-from somersault._core.checks import name_list
+from somersault._core.checks import name_list, shown
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number, numbers
 from somersault.ensembles._chunks import chunked
@@ -208,7 +208,7 @@ def reported(data: xr.Dataset, name: str) -> xr.DataArray:
     _require_dataset(data)
     there = [str(n) for n, v in data.data_vars.items() if v.dtype.kind == "f"]
     if not isinstance(name, str) or name not in there:
-        raise SomersaultError(f"this ensemble reports no {name!r}; it has {', '.join(there)}")
+        raise SomersaultError(f"this ensemble reports no {shown(name)}; it has {', '.join(there)}")
     return data[name]
 
 
@@ -216,7 +216,7 @@ def _require_dataset(data: xr.Dataset) -> None:
     import xarray as xr
 
     if not isinstance(data, xr.Dataset):
-        raise SomersaultError(f"an ensemble's dataset is an xarray.Dataset, and not {data!r}")
+        raise SomersaultError(f"an ensemble's dataset is an xarray.Dataset, and not {shown(data)}")
 
 
 def _over(values: xr.DataArray, over: str | Sequence[str]) -> list[str]:
@@ -226,7 +226,7 @@ def _over(values: xr.DataArray, over: str | Sequence[str]) -> list[str]:
     for dim in dims:
         if dim not in values.dims:
             there = ", ".join(str(d) for d in values.dims)
-            raise SomersaultError(f"there is no dimension {dim!r} to go over; there are {there}")
+            raise SomersaultError(f"no dimension {shown(dim)} can be gone over; there are {there}")
     return dims
 
 
@@ -249,6 +249,7 @@ def summary(data: xr.Dataset, tolerance: float | None = None) -> dict[str, Any]:
         of each quantity with its unit; and with a tolerance "within_tolerance", the share of
         landings within it.
     """
+    _require_dataset(data)
     ended = data[ENDED]
     row: dict[str, Any] = {"flights": int(ended.size), "ended": endings(data)}
     table = {}

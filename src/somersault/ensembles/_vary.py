@@ -13,9 +13,9 @@ import numpy as np
 from scipy import special
 
 from somersault._core.array import Array
-from somersault._core.checks import text, whole_number
+from somersault._core.checks import name_list, shown, text, whole_number
 from somersault._core.errors import SomersaultError
-from somersault._core.numbers import number, numbers
+from somersault._core.numbers import floats, number, numbers
 
 SEQUENCES = ("random", "sobol", "halton", "saltelli")
 _EDGE = 2.0**-54  # keeps draws inside (0, 1), where every distribution is finite
@@ -144,7 +144,7 @@ class Vary:
         assert self.distribution is not None
         given = [float(x) for x in getattr(self, self.distribution)]
         with np.errstate(over="ignore"):
-            return DISTRIBUTIONS[self.distribution][1](u, *given)
+            return DISTRIBUTIONS[self.distribution][1](floats("u", u), *given)
 
 
 def _names(given: Any) -> tuple[Any, ...]:
@@ -163,7 +163,10 @@ def check(name: str, vary: Vary) -> None:
     """SomersaultError, naming the key, unless a varied quantity makes sense."""
     where = f"vary.{name}"
     if not isinstance(vary, Vary):
-        raise SomersaultError(f"{where} must be a somersault.Vary, and is {vary!r}")
+        raise SomersaultError(f"{where} must be a somersault.Vary, and is {shown(vary)}")
+    for what in ("sets", "adds_to"):
+        if not isinstance(getattr(vary, what), str):
+            name_list(f"{where}.{what}", getattr(vary, what))
     named = vary.targets and all(isinstance(t, str) for t in vary.targets)
     if bool(_names(vary.sets)) == bool(_names(vary.adds_to)) or not named:
         raise SomersaultError(

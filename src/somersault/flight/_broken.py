@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from somersault._core.checks import instance
 from somersault.flight._flight import Flight
 from somersault.flight._lock import aligned
 
@@ -21,7 +22,7 @@ def why_broken(flight: Flight) -> str:
     str
         In a sentence.
     """
-    if flight.ended == "not finite":
+    if instance("flight", flight, Flight).ended == "not finite":
         return "its motion is no longer finite; a spring, damper or move is too stiff or fast"
     given_up = f"it had taken {flight.steps} steps of the integration"
     if joints := aligned(flight):

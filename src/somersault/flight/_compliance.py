@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import truth
+from somersault._core.checks import shown, truth
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 from somersault.attitude import matrix_from_quaternion
@@ -230,7 +230,7 @@ def _pose(model: Model, start: Start, pose: Mapping[str, float] | float | str) -
         if pose not in words:
             there = ", ".join(repr(word) for word in (_FOLLOWING, *words))
             raise SomersaultError(
-                f"pose {pose!r} is none; give joint angles by name, a time in s, or a word of "
+                f"pose {shown(pose)} is none; give joint angles by name, a time in s, or a word of "
                 f"{there}"
             )
         return posed(model, named_pose(model, pose))

@@ -132,8 +132,8 @@ def _setup(
     """One joint, its non-dimensional spring and damper at this rate, pretensioned."""
     speed = joint.name if joint.kind != "ball" else f"{joint.name}.1"
     inertia = spin.outboard_inertias[speed]
-    k = float(springs.get(joint.name, 0.0)) * rate**2 * inertia
-    b = float(dampers.get(joint.name, 0.0)) * abs(rate) * inertia
+    k = number(f"stiffness of {joint.name}", springs.get(joint.name, 0.0)) * rate**2 * inertia
+    b = number(f"damping of {joint.name}", dampers.get(joint.name, 0.0)) * abs(rate) * inertia
     if joint.kind == "ball":
         return Locked() if speed in locked else Sprung(stiffness=k, damping=b)
     angle = float(moved[spin.model.coordinate_slice(joint.name)][0])

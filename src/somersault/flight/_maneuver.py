@@ -7,13 +7,12 @@ import os
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import whole_number
+from somersault._core.checks import file_path, instance, shown, whole_number
 from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault._core.numbers import number, numbers
 from somersault.flight._batch import Batch
@@ -129,6 +128,7 @@ class Maneuver(Variants):
         >>> so.Maneuver.moves("furrer", arms, so.Takeoff(spin=7.0), 0.8)
         Maneuver(furrer, 0.8 s)
         """
+        instance("takeoff", takeoff, Takeoff)
         body = load(model)
         joints = prescribed(body, Motion.moves(body, keyframes))
         moving = replace(takeoff, joints={**takeoff.joints, **joints})
@@ -226,7 +226,7 @@ class Maneuver(Variants):
         ...     so.Maneuver.read(spec).duration
         0.5
         """
-        file = Path(path)
+        file = file_path("a SPEC", path)
         return cls.parse(read_toml(file), file.parent)
 
     @classmethod
@@ -256,7 +256,7 @@ class Maneuver(Variants):
         >>> so.Maneuver.parse(spec).duration
         0.5
         """
-        return cls(**parsed(tables, Path(beside)))
+        return cls(**parsed(tables, file_path("beside", beside)))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the maneuver as a TOML file, whole or not at all.
@@ -285,8 +285,8 @@ class Maneuver(Variants):
         ...     so.Maneuver.read(f"{folder}/layout.toml").duration
         0.5
         """
-        file = Path(path)
-        if file.suffix.lower() != ".toml" or file.is_dir():
+        file = file_path("path", path)
+        if file.suffix.lower() != ".toml" or os.path.isdir(file):
             raise SomersaultError(f"{str(path)!r} is no place for a maneuver; give a .toml file")
         try:
             write_toml(file, tables(self, file))
@@ -309,7 +309,7 @@ def check_limits_of_flight(accuracy: float, until: str | None, steps: int) -> No
     if not 1e-14 <= number("accuracy", accuracy) <= 1e-2:
         raise SomersaultError(f"accuracy {accuracy:g} rad is out of reach; give 1e-14 to 1e-2")
     if until is not None and not (isinstance(until, str) and until == "quarter twist"):
-        raise SomersaultError(f"until {until!r} is no event; use 'quarter twist'")
+        raise SomersaultError(f"until {shown(until)} is no event; use 'quarter twist'")
     whole_number("steps", steps, 1, _MOST_STEPS)
 
 

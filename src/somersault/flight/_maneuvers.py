@@ -13,7 +13,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from somersault._core.checks import name_list, whole_number
+from somersault._core.checks import name_list, shown, whole_number
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 from somersault.attitude import in_sequence
@@ -72,10 +72,12 @@ def inertia_change(
     """
     a, _, c = load(model).axes
     axis = a if axis is None else axis
-    if isinstance(axis, bool) or axis not in (a, c):
-        raise SomersaultError(f"axis is {axis!r}; give {a} for a somersault or {c} for a twist")
+    if isinstance(axis, bool) or not isinstance(axis, int) or axis not in (a, c):
+        raise SomersaultError(
+            f"axis is {shown(axis)}; give {a} for a somersault or {c} for a twist"
+        )
     if len(name_list("poses", poses)) != 2:
-        raise SomersaultError(f"poses are two, from which to which, and are {poses!r}")
+        raise SomersaultError(f"poses are two, from which to which, and are {shown(poses)}")
     body, (first, last) = load(model), (named(model, name) for name in poses)
     begin, move = seconds(begin=begin), seconds(move=move)
     h = number("spin", spin) * inertia(body, first)[axis - 1, axis - 1] * np.eye(3)[axis - 1]

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError
 from somersault.flight._takeoff import Takeoff
 from somersault.model import Model
@@ -67,6 +68,6 @@ def check_in_plane(model: Model, takeoff: Takeoff, until: str | None) -> None:
         refuse_out_of_plane(model, f"takeoff {what}", what, getattr(takeoff, what))
     if until is not None and model.plane is not None:
         raise SomersaultError(
-            f"until {until!r} never comes, as {model.name} moves in a plane and does not twist; "
+            f"until {shown(until)} never comes: {model.name} moves in a plane and does not twist; "
             "leave it out, or load the model with base='free'"
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from somersault._core.checks import instance
 from somersault.flight.behaviours import JointTakeoff, Prescribed
 from somersault.model import Model
 from somersault.motion import Motion, as_moves
@@ -37,6 +38,7 @@ def prescribed(
     >>> sorted(so.prescribed("furrer", raise_arms))
     ['left_shoulder', 'right_shoulder']
     """
+    instance("motion", motion, Motion)
     joints: dict[str, JointTakeoff] = {}
     for name, path in motion.joint_paths(model, duration).items():
         moves = as_moves(path) if motion.held else None

@@ -11,6 +11,7 @@ import numpy as np
 
 from somersault import rigid
 from somersault._core.array import Array
+from somersault._core.checks import instance
 from somersault._core.errors import SomersaultError
 from somersault.attitude import (
     in_sequence,
@@ -44,6 +45,7 @@ def principal_axes_along(flight: Flight) -> PrincipalAxes:
     >>> bool(layout > 2 * tuck)
     True
     """
+    instance("flight", flight, Flight)
     return principal_axes(flight.system.equations.inertia(flight.joint_coordinates))
 
 
@@ -77,7 +79,7 @@ def principal_attitude(flight: Flight) -> tuple[Array, Array]:
     >>> abs(np.degrees(tilt[[0, -1]])).round(1).tolist()
     [0.0, 9.4]
     """
-    h = flight.start.momentum
+    h = instance("flight", flight, Flight).start.momentum
     size = float(np.linalg.norm(h))
     if size == 0:
         raise SomersaultError(

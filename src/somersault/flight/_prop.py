@@ -8,6 +8,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 
@@ -50,7 +51,7 @@ class Prop:
     def __post_init__(self) -> None:
         number("a prop's angle", self.angle)
         if not isinstance(self.side, int | float | np.number) or self.side not in (1, -1):
-            raise SomersaultError(f"a prop's side is 1 or -1, and is {self.side!r}")
+            raise SomersaultError(f"a prop's side is 1 or -1, and is {shown(self.side)}")
         if number("a prop's stiffness", self.stiffness) <= 0:
             raise SomersaultError(f"a prop's stiffness must be positive, and is {self.stiffness:g}")
         if number("a prop's damping", self.damping) < 0:

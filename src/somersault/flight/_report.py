@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import by_name, name_list, whole_number
+from somersault._core.checks import by_name, instance, name_list, whole_number
 from somersault._core.errors import SomersaultError
-from somersault._core.numbers import number
+from somersault._core.numbers import floats, number
 from somersault.engine import STATUS
 from somersault.flight._flight import Flight
 from somersault.flight._watch import ANGLES, RATES, VELOCITIES
@@ -79,6 +79,7 @@ class Report:
         >>> so.Report(history=["tilt"], samples=3).times(1.0).tolist()
         [0.0, 0.5, 1.0]
         """
+        duration = number("duration", duration)
         return np.linspace(0.0, duration, self.samples) if self.history else np.empty(0)
 
 
@@ -101,7 +102,7 @@ def landing_target(flight: Flight) -> dict[str, float]:
     >>> round(target["left_elbow"], 6), len(target)
     (0.0, 16)
     """
-    end = flight.landing
+    end = instance("flight", flight, Flight).landing
     return {"somersault": end.somersault, "tilt": end.tilt, "twist": end.twist, **end.joints}
 
 
@@ -136,8 +137,14 @@ def landing_error(target: Mapping[str, float], landed: Mapping[str, Array | floa
     0.25
     """
 
+    target, landed = by_name("target", target), by_name("landed", landed)
+    for name in target:
+        if name not in landed:
+            raise SomersaultError(f"the landing says nothing of {name}, which the target names")
+
     def squared(name: str) -> Array:
-        return np.asarray(landed[name] - target[name]) ** 2
+        off = floats(f"landed {name}", landed[name]) - floats(f"target {name}", target[name])
+        return off**2
 
     body = sum((squared(name) for name in ANGLES if name in target), np.zeros(()))
     joints = [name for name in target if name not in ANGLES]

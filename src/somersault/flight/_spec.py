@@ -5,6 +5,7 @@ Reading gives the fields of a `Maneuver`, writing takes one; neither needs to kn
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -91,7 +92,7 @@ def _found(given: Mapping[str, Any], beside: Path) -> dict[str, Any]:
     """The tables with their files beside the SPEC."""
     tables = dict(given)
     name = tables.get("model")
-    if isinstance(name, str) and Path(name).suffix and (beside / name).is_file():
+    if isinstance(name, str) and Path(name).suffix and os.path.isfile(beside / name):
         tables["model"] = str(beside / name)
     if isinstance(tables.get("takeoff"), Mapping) and "joints" in tables["takeoff"]:
         raise SomersaultError("takeoff.joints is no key of a SPEC; write [joints.NAME]")

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
-from somersault._core.checks import by_name, instance, whole_number
+from somersault._core.checks import by_name, instance, shown, whole_number
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number, numbers
 from somersault.dynamics import Equations
@@ -242,8 +242,8 @@ def height_energy(equations: Equations, q: ArrayLike, gravity: ArrayLike = GRAVI
     ndarray, (…)
         J; zero with the centre of mass at the height of the ground's origin.
     """
-    model = equations.model
-    return -model.mass * centre_of_mass(model, q) @ np.asarray(gravity, float)
+    model = instance("equations", equations, Equations).model
+    return -model.mass * centre_of_mass(model, q) @ numbers("gravity", gravity, 3)
 
 
 def _check(model: Model, stops: Mapping[str, Prop]) -> None:
@@ -275,7 +275,9 @@ def _slope(model: Model, gravity: Array, stops: Mapping[str, Prop]) -> ca.Functi
 
 def _gauge(model: Model, until: tuple[str, float]) -> ca.Function:
     if not isinstance(until, tuple | list) or len(until) != 2:
-        raise SomersaultError(f"until must be a joint and its angle, ('bar', 1.4), not {until!r}")
+        raise SomersaultError(
+            f"until must be a joint and its angle, ('bar', 1.4), not {shown(until)}"
+        )
     joint, angle = until
     x = ca.SX.sym("x", 2 * len(model.joints) + 1)
     at = model.coordinate_slice(joint).start

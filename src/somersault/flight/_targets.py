@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from somersault._core.checks import shown, text
 from somersault._core.errors import SomersaultError
 from somersault.dynamics import parameter_values
 from somersault.flight._batch import Batch
@@ -33,6 +34,7 @@ def targets(batch: Batch, path: str) -> tuple[Target, ...]:
     SomersaultError
         For a name that is not there.
     """
+    text("the name of a number", path)
     if match := _TAKEOFF.match(path):
         return _of_takeoff(batch, path, *match.groups())
     if match := _JOINT.match(path):
@@ -40,7 +42,7 @@ def targets(batch: Batch, path: str) -> tuple[Target, ...]:
     if match := _BODY.match(path):
         return _of_body(batch.model, *match.groups())
     raise SomersaultError(
-        f"{path!r} names no number; names are like takeoff.tilt, joints.JOINT.stiffness, "
+        f"{shown(path)} names no number; names are like takeoff.tilt, joints.JOINT.stiffness, "
         "joints.JOINT.times.2, bodies.BODY.mass"
     )
 

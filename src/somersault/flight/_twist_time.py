@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from somersault._core.checks import instance
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 from somersault.flight._maneuver import Maneuver
@@ -41,6 +42,7 @@ def twist_time(maneuver: Maneuver, twists: float) -> float:
     >>> 0.0 < so.flight.twist_time(so.torque_twist(), 0.5) < 1.0
     True
     """
+    instance("maneuver", maneuver, Maneuver)
     target = 2 * math.pi * number("twists", twists)
     longest = max(maneuver.duration, 1.0)
     while True:
@@ -64,4 +66,6 @@ def twist_time(maneuver: Maneuver, twists: float) -> float:
         return abs(here - maneuver.takeoff.twist) - target
 
     low = max(float(low), 1e-9)
+    if missing(low) >= 0:
+        return low
     return float(brentq(missing, low, float(high), xtol=_FINE, rtol=1e-14))

@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Callable, Mapping
 from typing import Any, Self
 
+from somersault._core.checks import instance
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 from somersault.flight._compliance import compliant, off_nominal, with_momentum
@@ -115,7 +116,8 @@ class Variants:
         >>> layout.from_takeoff(so.Takeoff(spin=9.0)).takeoff.spin
         9.0
         """
-        joints = {**self.takeoff.joints, **takeoff.joints}
+        given = instance("takeoff", takeoff, Takeoff).joints
+        joints = {**self.takeoff.joints, **given}
         return self.changed(takeoff=dataclasses.replace(takeoff, joints=joints))
 
     def with_momentum(self) -> Self:

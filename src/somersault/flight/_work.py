@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from somersault._core.checks import instance
 from somersault.flight._flight import Flight
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ def joint_power(flight: Flight) -> xr.DataArray:
     >>> bool(joint_power(flight).sum("joint_speed").max() > 0)
     True
     """
+    instance("flight", flight, Flight)
     power = flight.joint_torques * flight.dataset["joint_rate"].values
     return power.rename("joint_power").assign_attrs(units="W")
 

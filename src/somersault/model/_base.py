@@ -16,6 +16,7 @@ from typing import Literal
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.checks import instance
 from somersault._core.errors import SomersaultError
 from somersault.attitude import AXES, Axes
 from somersault.model._bodies import GROUND, Body, Joint
@@ -238,7 +239,7 @@ def base_on_its_joints(model: Model) -> Model | None:
     """
     chain = [
         replace(body, mass=1.0, com=ZERO, inertia=IDENTITY, shapes=())
-        for body in model.file_coordinates.root
+        for body in instance("model", model, Model).file_coordinates.root
     ]
     if not chain:
         return None

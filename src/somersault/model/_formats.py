@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from somersault._core.checks import shown, text
 from somersault._core.errors import SomersaultError
 from somersault.model._base import Base, rebased
 from somersault.model._model import Model
@@ -33,9 +34,11 @@ def register_format(ending: str, read: Callable[[Path], Model]) -> None:
     >>> from somersault.model import register_format
     >>> register_format(".book", lambda path: so.load("book"))
     """
-    key = ending.lower()
+    key = text("ending", ending).lower()
     if not key.startswith(".") or key in _OWN:
         raise SomersaultError(f"{ending!r} is no ending that can be given to a format of yours")
+    if not callable(read):
+        raise SomersaultError(f"read must be a function of a path, and is {shown(read)}")
     _READERS[key] = lambda path, base: rebased(read(path), base)
 
 

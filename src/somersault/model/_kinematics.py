@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
+from somersault._core.checks import instance
+from somersault._core.numbers import floats, require_together
 from somersault.attitude import matrix_from_quaternion
 from somersault.model._bodies import GROUND, Joint
 from somersault.model._model import Model
@@ -41,7 +43,7 @@ def body_frames(model: Model, q: ArrayLike) -> tuple[Array, Array]:
     >>> origins.shape == (len(gymnast.bodies), 3)
     True
     """
-    rotations, origins, _, _ = _outward(model, np.asarray(q, float), None)
+    rotations, origins, _, _ = _outward(model, q, None)
     return rotations, origins
 
 
@@ -62,7 +64,7 @@ def body_velocities(model: Model, q: ArrayLike, u: ArrayLike) -> tuple[Array, Ar
         rad/s and m/s, in the base's axes. With a base that turns with ω and whose origin moves
         with v, a body at `origin` has angular + ω and linear + v + ω × origin.
     """
-    _, _, angular, linear = _outward(model, np.asarray(q, float), np.asarray(u, float))
+    _, _, angular, linear = _outward(model, q, u)
     return angular, linear
 
 
@@ -103,10 +105,8 @@ def segment_momenta(model: Model, q: ArrayLike, omega: ArrayLike, u: ArrayLike) 
     ndarray, (…, bodies, 3)
         kg m²/s, in the base's axes.
     """
-    rotations, origins, angular, linear = _outward(
-        model, np.asarray(q, float), np.asarray(u, float)
-    )
-    base = np.asarray(omega, float)[..., None, :]
+    rotations, origins, angular, linear = _outward(model, q, u)
+    base = floats("omega", omega, 3)[..., None, :]
     angular, linear = angular + base, linear + np.cross(base, origins)
     centres, whole = _centres(model, rotations, origins)
     velocities = linear + np.cross(angular, centres - origins)
@@ -126,8 +126,12 @@ def _centres(model: Model, rotations: Array, origins: Array) -> tuple[Array, Arr
     return centres, np.einsum("b,...bi->...i", masses, centres) / masses.sum()
 
 
-def _outward(model: Model, q: Array, u: Array | None) -> tuple[Array, Array, Array, Array]:
+def _outward(model: Model, q: ArrayLike, u: ArrayLike | None) -> tuple[Array, Array, Array, Array]:
     """Rotations and origins, and from joint speeds the rates of both (zeros without)."""
+    instance("model", model, Model)
+    q = floats("q", q, len(model.coordinates))
+    u = np.zeros(len(model.speeds)) if u is None else floats("u", u, len(model.speeds))
+    require_together({"q": q.shape[:-1], "u": u.shape[:-1]})
     shape = (*q.shape[:-1], len(model.bodies))
     rotations, origins = np.empty((*shape, 3, 3)), np.empty((*shape, 3))
     angular, linear = np.zeros((*shape, 3)), np.zeros((*shape, 3))

@@ -82,7 +82,9 @@ def check_mass_matrix(model: Model) -> None:
         q = model.home if number == 0 else _some_pose(model, random)
         matrix = follow.T @ mass_matrix(model, q) @ follow
         scale = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
-        values, vectors = np.linalg.eigh(matrix / np.outer(scale, scale))
+        with np.errstate(over="ignore"):  # a positive matrix has no entry beyond 1 then
+            scaled = np.clip(matrix / scale / scale[:, None], -2.0, 2.0)
+        values, vectors = np.linalg.eigh(scaled)
         if values[0] > lowest:
             lowest, motion = values[0], vectors[:, 0]
         if values[0] < -_ROUNDING or np.any(np.diag(matrix) < 0):

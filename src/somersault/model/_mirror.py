@@ -14,6 +14,7 @@ from functools import lru_cache
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.checks import instance, text
 from somersault.attitude import from_sequence
 from somersault.model._bodies import GROUND, Joint
 from somersault.model._kinematics import body_frames
@@ -45,7 +46,6 @@ class Pair:
     sign: int
 
 
-@lru_cache(maxsize=64)
 def mirror_pairs(model: Model) -> tuple[Pair, ...]:
     """The pairs of a model in the pose in which its file draws it.
 
@@ -67,6 +67,11 @@ def mirror_pairs(model: Model) -> tuple[Pair, ...]:
     >>> [pair.name for pair in so.model.mirror_pairs(so.load("furrer"))]
     ['shoulder']
     """
+    return _mirror_pairs(instance("model", model, Model))
+
+
+@lru_cache(maxsize=64)
+def _mirror_pairs(model: Model) -> tuple[Pair, ...]:
     drawn = _drawn(model)
     best: tuple[Pair, ...] = ()
     for axis in model.axes:
@@ -104,6 +109,8 @@ def reflection(model: Model, pair: Pair) -> tuple[float, float]:
     factor, offset : float
         right = offset + factor · left; the factor turns rates over.
     """
+    instance("model", model, Model)
+    instance("pair", pair, Pair)
     references = {joint.name: joint.reference for joint in model.joints if joint.kind != "ball"}
     left, right = (references.get(model.speeds[k], 0.0) for k in (pair.left, pair.right))
     return float(pair.sign), right - pair.sign * left
@@ -122,7 +129,7 @@ def sides(model: Model, name: str) -> dict[str, tuple[float, float]]:
     dict of str to (float, float)
         For each joint the factor and the offset that make its angle of the first one's.
     """
-    pair = named_pairs(model).get(name)
+    pair = named_pairs(model).get(text("name", name))
     if pair is None or name in model.speeds:
         return {name: (1.0, 0.0)}
     left, right = (model.speeds[k] for k in (pair.left, pair.right))
@@ -141,9 +148,10 @@ def mirror_images(model: Model) -> dict[str, tuple[str, float, float]]:
     dict of str to (str, float, float)
         Its name, and the factor and the offset that make its angle of this joint's.
     """
+    pairs = mirror_pairs(model)
     joints = {joint.name for joint in model.joints if joint.kind != "ball"}
     images = {}
-    for pair in mirror_pairs(model):
+    for pair in pairs:
         left, right = model.speeds[pair.left], model.speeds[pair.right]
         if left in joints:
             factor, offset = reflection(model, pair)
@@ -313,6 +321,7 @@ def common_name(left: str, right: str) -> str:
         Of left_shoulder and right_shoulder "shoulder"; both names, joined by a plus sign, where
         they share nothing.
     """
+    left, right = text("left", left), text("right", right)
     if left == right:
         return left
     one, two = (re.sub(r"[_\-. ]{2,}", "_", _SIDE.sub("", n, count=1)) for n in (left, right))

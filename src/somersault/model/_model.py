@@ -11,6 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
+from somersault._core.checks import shown, text
 from somersault._core.errors import SomersaultError
 from somersault.attitude import AXES, Axes, as_axes
 from somersault.model._bodies import Body, Follow, Joint, coordinate_names, speed_names
@@ -157,11 +158,12 @@ class Model:
         >>> so.load("furrer").joint("left_shoulder").kind
         'hinge'
         """
+        text("the name of a joint", name)
         for joint in self.joints:
             if joint.name == name:
                 return joint
         raise SomersaultError(
-            f"{self.name} has no joint {name!r}; {_there_are([j.name for j in self.joints])}"
+            f"{self.name} has no joint {shown(name)}; {_there_are([j.name for j in self.joints])}"
         )
 
     def coordinate_slice(self, name: str) -> slice:

@@ -10,6 +10,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.checks import instance, shown
 from somersault._core.errors import SomersaultError
+from somersault._core.numbers import as_floats
 from somersault.model._bodies import GROUND, Body
 from somersault.model._model import Model
 from somersault.model._vectors import IDENTITY, ZERO, Matrix, Vector, as_matrix, as_vector
@@ -99,11 +100,8 @@ def mounted(
 
 def _numbers(what: str, given: Any, shape: tuple[int, ...]) -> Array:
     """Finite numbers of a shape; SomersaultError naming `what`."""
-    try:
-        found = np.asarray(given, float)
-    except (TypeError, ValueError, OverflowError):
-        found = np.array(np.nan)
-    if found.shape != shape or not np.all(np.isfinite(found)):
+    found = as_floats(given)
+    if found is None or found.shape != shape or not np.all(np.isfinite(found)):
         wanted = " x ".join(map(str, shape))
         raise SomersaultError(f"{what} must be {wanted} finite numbers, and is {shown(given)}")
     return found

@@ -7,6 +7,7 @@ import json
 from dataclasses import fields, is_dataclass
 from typing import Any
 
+from somersault._core.checks import instance
 from somersault.model._model import Model
 
 _NAMES = ("name", "ignored")  # of a model: what it is called, and what its file held besides
@@ -28,7 +29,7 @@ def plain_form(model: Model) -> dict[str, Any]:
     dict
         Of texts, numbers, truth values, lists and dicts.
     """
-    form = _plain(model)
+    form = _plain(instance("model", model, Model))
     return {name: value for name, value in form.items() if name not in _NAMES}
 
 

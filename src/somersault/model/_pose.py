@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
-from somersault._core.checks import by_name, shown
+from somersault._core.checks import by_name, shown, truth
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import floats, require_together
 from somersault.model._bodies import LIMIT_SLACK, Follow, Joint
@@ -128,11 +128,12 @@ def spread(
     SomersaultError
         For a joint that is given twice.
     """
+    truth("mirrored", mirrored)
     result: dict[str, ArrayLike] = {}
     for name, value in by_name("what joints get", values).items():
         for speed, (factor, offset) in sides(model, name).items():
             if speed in result:
                 raise SomersaultError(f"{speed} is given twice, by its own name and its pair's")
             image = mirrored and (factor, offset) != (1.0, 0.0)
-            result[speed] = offset + factor * np.asarray(value, float) if image else value
+            result[speed] = offset + factor * floats(name, value) if image else value
     return result

@@ -7,9 +7,11 @@ import warnings
 
 import numpy as np
 
+from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault.attitude import AXES, Axes
 from somersault.model._bodies import GROUND, Body, Follow, Joint, speed_names
+from somersault.model._types_given import check_types
 
 _ALONG = 1 - 1e-12  # cosine to the normal of a plane from which on a hinge turns in the plane
 FREE_IT = (
@@ -32,6 +34,7 @@ def check(
     ------
     SomersaultError
     """
+    check_types(name, free, bodies)
     joints = [joint for body in bodies for joint in body.joints]
     if not bodies:
         raise SomersaultError(f"{name} has no bodies, so nothing can fly; add a body")
@@ -76,9 +79,9 @@ def _check_plane(name: str, free: bool, axes: Axes, plane: int) -> None:
         raise SomersaultError(
             f"{name} has a fixed base, so it moves in no plane of its own; leave its plane out"
         )
-    if isinstance(plane, bool) or plane not in (1, 2, 3):
+    if isinstance(plane, bool) or not isinstance(plane, int) or plane not in (1, 2, 3):
         raise SomersaultError(
-            f"{name} has the plane {plane!r}; give the base's axis across it, 1, 2 or 3"
+            f"{name} has the plane {shown(plane)}; give the base's axis across it, 1, 2 or 3"
         )
     if axes[0] != plane:
         raise SomersaultError(
@@ -175,7 +178,7 @@ def _warn_of_impossible(name: str, bodies: tuple[Body, ...]) -> None:
 def _check_joint(name: str, joint: Joint) -> None:
     where = f"{name}: joint {joint.name!r}"
     if joint.kind not in ("hinge", "slide", "ball"):
-        raise SomersaultError(f"{where} is a {joint.kind!r}; joints are hinge, slide or ball")
+        raise SomersaultError(f"{where} is a {shown(joint.kind)}; joints are hinge, slide or ball")
     numbers = [*joint.axis, *joint.anchor, joint.reference, joint.rest]
     numbers += [joint.stiffness, joint.damping, joint.armature, *(joint.limits or ())]
     if not all(map(math.isfinite, numbers)):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.checks import instance
 from somersault.model._bodies import Body
 from somersault.model._model import Model
 from somersault.model._vectors import as_matrix, as_vector
@@ -25,7 +26,7 @@ def model_shapes(model: Model) -> tuple[tuple[Shape, ...], ...]:
     tuple of tuple of Shape
         For each body, in its axes.
     """
-    shapes = tuple(body.shapes for body in model.bodies)
+    shapes = tuple(body.shapes for body in instance("model", model, Model).bodies)
     return shapes if any(shapes) else _sticks(model)
 
 

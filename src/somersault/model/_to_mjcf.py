@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import instance
+from somersault._core.checks import file_path, instance
 from somersault._core.errors import SomersaultError
 from somersault._core.files import write
 from somersault.attitude import quaternion_from_matrix
@@ -48,10 +47,10 @@ def write_mjcf(model: Model, path: str | os.PathLike[str]) -> None:
     >>> so.write_mjcf(so.athlete(1.70, 62.0), "me.xml")  # doctest: +SKIP
     >>> so.load("me.xml")  # doctest: +SKIP
     """
-    file = Path(path)
+    file = file_path("path", path)
     if file.suffix.lower() not in (".xml", ".mjcf"):
         raise SomersaultError(f"{file.name}: MJCF is written as .xml or .mjcf")
-    write(file, mjcf(instance("model", model, Model)))
+    write(file, mjcf(model))
 
 
 def mjcf(model: Model) -> str:
@@ -70,6 +69,7 @@ def mjcf(model: Model) -> str:
     SomersaultError
         For what MuJoCo would not take.
     """
+    instance("model", model, Model)
     root = Element("mujoco", model=model.name)
     SubElement(root, "compiler", angle="radian", inertiafromgeom="false", autolimits="false")
     SubElement(root, "option", gravity="0 0 0")

@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TypeAlias
 
 from somersault._core.array import Array
+from somersault._core.errors import SomersaultError
+from somersault._core.numbers import floats
 
 Vector: TypeAlias = tuple[float, float, float]
 Matrix: TypeAlias = tuple[Vector, Vector, Vector]
@@ -24,7 +26,7 @@ def as_vector(array: Array) -> Vector:
     -------
     tuple of float
     """
-    x, y, z = array.tolist()
+    x, y, z = _shaped("a vector", array, (3,)).tolist()
     return (x, y, z)
 
 
@@ -39,5 +41,12 @@ def as_matrix(array: Array) -> Matrix:
     -------
     tuple of tuple of float
     """
-    first, second, third = (as_vector(row) for row in array)
+    first, second, third = (as_vector(row) for row in _shaped("a matrix", array, (3, 3)))
     return (first, second, third)
+
+
+def _shaped(what: str, array: Array, shape: tuple[int, ...]) -> Array:
+    result = floats(what, array)
+    if result.shape != shape:
+        raise SomersaultError(f"{what} has shape {shape}, and this one {result.shape}")
+    return result

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.checks import list_of, truth
 from somersault.model._bodies import GROUND, Body
 from somersault.model._vectors import as_matrix, as_vector
 from somersault.model.shapes import Shape
@@ -77,6 +78,8 @@ def merge_welded(bodies: list[Body], free: bool) -> tuple[Body, ...]:
     -------
     tuple of Body
     """
+    bodies = list_of("bodies", bodies, Body)
+    truth("free", free)
     kept: list[Body] = []
     lumps: list[_Lump] = []
     places: list[_Place] = []

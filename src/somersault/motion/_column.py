@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path as File
 
+from somersault._core.checks import file_path, shown, text
 from somersault._core.errors import SomersaultError
 from somersault.motion._tables import column_name, seconds, table_of
 
@@ -40,7 +40,9 @@ def read_column(
     ...     read_column(file)
     ((0.0, 0.1), (0.0, 25.0))
     """
-    file = File(path)
+    file = file_path("path", path)
+    if column is not None:
+        text("column", column)
     try:
         table = table_of(file)
         names = [column_name(label) for label in table.labels]
@@ -50,7 +52,7 @@ def read_column(
         others = [name for k, name in enumerate(names) if k != at]
         wanted = others[0] if column is None and len(others) == 1 else column
         if wanted not in others:
-            said = "names no column of it" if column is None else f"has no column {column!r}"
+            said = "names no column of it" if column is None else f"has no column {shown(column)}"
             raise SomersaultError(f"{said}; name one of {', '.join(others[:12])}")
         times = seconds(table.labels[at]) * table.values[:, at]
         values = table.values[:, names.index(wanted)]

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault.model import Model
 from somersault.motion._names import nameable, spread
@@ -61,7 +62,7 @@ def columns_of(
     for what is missing.
     """
     if not isinstance(names, Mapping):
-        raise SomersaultError(f"names map columns to joints, and are {names!r}")
+        raise SomersaultError(f"names map columns to joints, and are {shown(names)}")
     found = _sorted(table, model, names, degrees)
     own = set(_QUATERNION) <= set(found.pose)
     if found.times is None:

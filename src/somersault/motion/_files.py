@@ -5,10 +5,9 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path as File
 from typing import Any
 
-from somersault._core.checks import truth
+from somersault._core.checks import file_path, truth
 from somersault._core.errors import SomersaultError
 from somersault.model import Model, load
 from somersault.motion._columns import columns_of
@@ -77,10 +76,7 @@ def read_motion(
     (('left_shoulder',), 0.4)
     """
     model = load(model)
-    try:
-        file = File(path)
-    except TypeError:
-        raise SomersaultError(f"{path!r} is no file of a motion; give its path") from None
+    file = file_path("path", path)
     truth("ignore_others", ignore_others)
     if degrees is not None:
         truth("degrees", degrees)

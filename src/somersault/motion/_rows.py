@@ -8,17 +8,14 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
-from somersault._core.numbers import MOST
+from somersault._core.numbers import MOST, as_floats
 from somersault.motion._path import check_rows
 
 
 def finite(what: str, values: Sequence[float] | Array) -> Array:
     """A row of finite numbers; SomersaultError naming `what`, and which, for anything else."""
-    try:
-        row = np.asarray(values, float)
-    except (TypeError, ValueError, OverflowError):
-        row = np.empty((0, 0))
-    if row.ndim != 1:
+    row = as_floats(values)
+    if row is None or row.ndim != 1:
         raise SomersaultError(f"{what} must be a row of numbers; give a list of them")
     wrong = np.flatnonzero(~(np.abs(row) <= MOST))
     if wrong.size:
@@ -31,11 +28,8 @@ def finite(what: str, values: Sequence[float] | Array) -> Array:
 
 def keyframe_table(name: str, rows: Sequence[tuple[float, float]]) -> Array:
     """Times and angles of one joint, (K, 2)."""
-    try:
-        table = np.asarray(rows, float)
-    except (TypeError, ValueError, OverflowError):
-        table = np.empty(0)
-    if table.ndim != 2 or table.shape[1] != 2:
+    table = as_floats(rows)
+    if table is None or table.ndim != 2 or table.shape[1] != 2:
         raise SomersaultError(f"joint {name}: keyframes are a list of (time, angle) pairs")
     times, angles = (
         finite(f"joint {name}: {what}", column)

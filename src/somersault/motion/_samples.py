@@ -18,7 +18,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.checks import by_name, text
 from somersault._core.errors import SomersaultError
-from somersault._core.numbers import number
+from somersault._core.numbers import floats, number
 from somersault.model import Model, load
 from somersault.motion._jumps import refuse_jumps, without_turns
 from somersault.motion._limits import check_slack, check_within
@@ -37,6 +37,7 @@ SLOWEST = 1.0  # Hz; a flight of a second or two cannot be told from less
 _PASSES = 2
 _GAP = 2.5  # median steps: one lost sample is bridged, two are a gap
 _EVEN = 1e-3  # of a step
+_SLOWEST_CUTOFF = 1e-4  # of the rate: below it rounding moves the samples by more than 1e-9
 
 
 def sampled_motion(
@@ -168,9 +169,24 @@ def low_pass(samples: Array, rate: float, cutoff: float) -> Array:
     Returns
     -------
     ndarray, shape (T, ...)
+
+    Raises
+    ------
+    SomersaultError
+        For samples that are not finite, and a cutoff that is not between 0 and half the rate.
     """
     from scipy.signal import butter, sosfiltfilt
 
+    samples = floats("samples", samples)
+    if not samples.ndim or not np.all(np.isfinite(samples)):
+        raise SomersaultError("samples must be finite numbers along a first dimension of time")
+    rate, cutoff = number("rate", rate), number("cutoff", cutoff)
+    if not rate * _SLOWEST_CUTOFF <= cutoff < rate / 2:
+        raise SomersaultError(
+            f"samples at {rate:.4g} Hz cannot be filtered at {cutoff:g} Hz; give a cutoff from "
+            f"{rate * _SLOWEST_CUTOFF:.4g} to {rate / 2:.4g}, or None for no filter, and see that "
+            "times are in seconds"
+        )
     once = np.tan(np.pi * cutoff / rate) / (2 ** (1 / _PASSES) - 1) ** 0.25
     sections = butter(2, np.arctan(once) * rate / np.pi, fs=rate, output="sos")
     # Beyond the ends the samples go on point-symmetrically, for as long as the filter remembers.
@@ -229,11 +245,6 @@ def _even(at: Array, samples: Array) -> tuple[Array, Array, str]:
 def _filtered(samples: Array, rate: float, cutoff: float | None) -> Array:
     if cutoff is None:
         return samples
-    if not 0 < number("cutoff", cutoff) < rate / 2:
-        raise SomersaultError(
-            f"samples at {rate:.4g} Hz cannot be filtered at {cutoff:g} Hz; give a cutoff between "
-            f"0 and {rate / 2:.4g}, or None for no filter, and see that times are in seconds"
-        )
     return low_pass(samples, rate, cutoff)
 
 

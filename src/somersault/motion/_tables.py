@@ -88,12 +88,13 @@ def _opensim(lines: list[tuple[int, str]]) -> Table:
     labels, values = _numbers(lines[end + 1 :])
     for what, found in (("rows", len(values)), ("columns", len(labels))):
         told = re.search(rf"^(?:n{what}\s*=|data{what}\s)\s*(\d+)\s*$", header, re.MULTILINE)
-        if told and int(told.group(1)) != found:
+        said = float(told.group(1)) if told else found  # which, unlike int, takes any digits
+        if said != found:
             raise SomersaultError(
-                f"its header says {told.group(1)} {what} and there are {found}; "
+                f"its header says {said:.10g} {what} and there are {found}; "
                 + (
                     "it was cut off, so export it again"
-                    if int(told.group(1)) > found
+                    if said > found
                     else "correct its header, or export it again"
                 )
             )

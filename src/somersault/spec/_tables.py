@@ -122,7 +122,14 @@ def plain_fields(value: Any) -> dict[str, Any]:
     Returns
     -------
     dict
+
+    Raises
+    ------
+    SomersaultError
+        For what is none.
     """
+    if not dataclasses.is_dataclass(value) or isinstance(value, type):
+        raise SomersaultError(f"a table is written from a dataclass, and not from {shown(value)}")
     return {
         field.name: plain(getattr(value, field.name))
         for field in dataclasses.fields(value)

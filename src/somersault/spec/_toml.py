@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from somersault._core.checks import file_path
 from somersault._core.errors import SomersaultError
-from somersault._core.files import write
+from somersault._core.files import read_bytes, write
 
 _MOST_BYTES = 10_000_000
 
@@ -30,12 +32,17 @@ def read_toml(path: Path) -> dict[str, Any]:
     SomersaultError
         For a file that is not there, is too large, or is not TOML.
     """
-    if not path.is_file():
+    path = file_path("a SPEC", path)
+    if not os.path.isfile(path):  # which, unlike pathlib, takes any name
         raise SomersaultError(f"there is no SPEC file {str(path)!r}; check the path")
-    if path.stat().st_size > _MOST_BYTES:
+    try:
+        data = read_bytes(path, _MOST_BYTES + 1)
+    except OSError as trouble:
+        raise SomersaultError(f"{path} cannot be read ({trouble.strerror}); check it") from None
+    if len(data) > _MOST_BYTES:
         raise SomersaultError(f"{path.name} is larger than 10 MB, which no SPEC is; check the file")
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        return tomllib.loads(data.decode("utf-8-sig").replace("\r\n", "\n"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise SomersaultError(f"{path.name} is not TOML: {error}; correct the file") from None
     except ValueError:  # an integer of more digits than Python reads
@@ -49,7 +56,16 @@ def write_toml(path: Path, tables: Mapping[str, Any]) -> None:
     ----------
     path : pathlib.Path
     tables : mapping
+
+    Raises
+    ------
+    SomersaultError
+        For what is no path, and what TOML cannot hold.
     """
     import tomli_w
 
-    write(path, tomli_w.dumps(tables))
+    try:
+        text = tomli_w.dumps(tables)
+    except (TypeError, ValueError, AttributeError, RecursionError) as trouble:
+        raise SomersaultError(f"these tables cannot be written as TOML: {trouble}") from None
+    write(file_path("path", path), text)

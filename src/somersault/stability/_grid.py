@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
-from somersault._core.checks import by_name, shown
+from somersault._core.checks import by_name, shown, text
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import floats, require_together
 from somersault.dynamics import body_kind
@@ -22,6 +22,7 @@ from somersault.stability._principal import (
     Axis,
     axes_of_spin,
     axis_index,
+    body_axis,
     or_somersault,
     require_free,
     require_inertia,
@@ -99,8 +100,8 @@ def row(what: str, given: Any) -> tuple[str, Array]:
     """The name and the values of a quantity that is varied along a row."""
     try:
         name, values = given
-        return str(name), np.asarray(values, float)
-    except (TypeError, ValueError, OverflowError):
+        return text("its name", name), floats("its values", values)
+    except (TypeError, ValueError):
         raise SomersaultError(
             f"{what} is a name and values, ('pose.shoulder', [0, 1]), not {shown(given)}"
         ) from None
@@ -181,8 +182,8 @@ def _stacked(values: Sequence[Array]) -> Array:
 
 
 def _one_axis(model: Model, inertias: Array, axis: Axis | str | int) -> int:
-    if str(axis) in ("1", "2", "3"):
-        return int(axis) - 1
+    if (own := body_axis(axis)) is not None:
+        return own
     indices = {axis_index(one, axis) for one in inertias.reshape(-1, 3)}
     if len(indices) > 1:
         raise SomersaultError(

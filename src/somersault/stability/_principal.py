@@ -17,6 +17,7 @@ from somersault.model import FREE_IT, Model
 
 Axis = Literal["minor", "intermediate", "major", 1, 2, 3]
 _RANK = {"minor": 0, "intermediate": 1, "major": 2}
+_BODY_AXES = {"1": 0, "2": 1, "3": 2, 1: 0, 2: 1, 3: 2}
 _ORDERS = np.array(list(permutations(range(3))))
 
 
@@ -107,13 +108,19 @@ def _sharpened(inertia: Array, axes: Array) -> PrincipalAxes:
 
 def axis_index(inertias: Array, axis: Axis | str | int) -> int:
     """Index 0, 1, 2 of the principal axis meant, of a body with these three inertias."""
-    if str(axis) in ("1", "2", "3"):
-        return int(axis) - 1
-    if str(axis) in _RANK:
-        return int(np.argsort(inertias)[_RANK[str(axis)]])
+    if (own := body_axis(axis)) is not None:
+        return own
+    if isinstance(axis, str) and axis in _RANK:
+        return int(np.argsort(inertias)[_RANK[axis]])
     raise SomersaultError(
         f"{shown(axis)} is no axis to spin about; use minor, intermediate, major, 1, 2 or 3"
     )
+
+
+def body_axis(axis: Axis | str | int) -> int | None:
+    """Index 0, 1, 2 of the body axis meant, None for what is no number of one."""
+    known = isinstance(axis, str | int | np.integer) and not isinstance(axis, bool)
+    return _BODY_AXES.get(axis) if known else None  # type: ignore[call-overload]
 
 
 def axes_of_spin(model: Model, inertia: Array) -> PrincipalAxes:
@@ -149,7 +156,7 @@ def or_somersault(model: Model, axis: Axis | str | int | None) -> Axis | str | i
     if model.plane is not None and axis is not None and str(axis) != str(model.plane):
         raise SomersaultError(
             f"{model.name} moves in the plane across its axis {model.plane}, so it spins about no "
-            f"other; leave axis {axis!r} out, or load the model with base='free'"
+            f"other; leave axis {shown(axis)} out, or load the model with base='free'"
         )
     return model.axes[0] if axis is None else axis
 

@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.checks import instance, name_list
 from somersault.dynamics import Equations
 from somersault.engine import Kernel
 from somersault.model import Model
@@ -116,6 +117,8 @@ def holding_torques(
     >>> inertia.round(2), torques.round(3)
     (array([11.06]), array([[-0.31,  0.31]]))
     """
+    instance("model", model, Model)
+    parameters = name_list("parameters", parameters)
     whole = composite_inertia(model, q, parameters, values)
     before, k, after = cycle(model.axes[0])
     axis = np.tile(np.eye(3)[k], (len(q), 1))

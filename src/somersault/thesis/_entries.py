@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from somersault._core.checks import list_of, name_list
 from somersault._core.errors import SomersaultError
 
 if TYPE_CHECKING:
@@ -124,7 +125,8 @@ class Chapter:
 
 def select(ids: Iterable[str] | None, entries: Sequence[Entry]) -> list[Entry]:
     """The entries that IDs name, in their own order: chapters ("ch4") or entries ("fig4-9")."""
-    wanted = [ids] if isinstance(ids, str) else list(ids or [])
+    wanted = [ids] if isinstance(ids, str) else [*name_list("ids", () if ids is None else ids)]
+    list_of("entries", entries, Entry)
     if not wanted:
         return list(entries)
     chapters = list(dict.fromkeys(entry.chapter for entry in entries))

@@ -10,6 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from somersault._core.checks import file_path, truth
 from somersault._core.errors import SomersaultError
 from somersault._core.files import write
 from somersault.thesis._claims import Claim
@@ -61,7 +62,8 @@ def reproduce(
     (16, True)
     """
     chosen = select(ids, entries)
-    out = Path(out)
+    out = file_path("out", out)
+    truth("progress", progress)
     try:
         out.mkdir(parents=True, exist_ok=True)
         with TemporaryDirectory(prefix=".making-", dir=out) as folder:

@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.checks import text, whole_number
+from somersault._core.numbers import numbers
 from somersault.attitude import matrix_from_quaternion
 from somersault.view import _figure as parts
 from somersault.view import style as look
+from somersault.view._look import several
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -56,14 +59,18 @@ def contact_sheet(
     >>> flight = so.arm_tilt().fly()
     >>> picture = contact_sheet(flight, [0.0, 0.2, 0.4], columns=3)
     """
+    (history,) = several("history", history, 1, 1)
+    times = numbers("times", times)
+    columns = whole_number("columns", columns, 1, 100)
+    azimuth, elevation = numbers("view", view, 2).tolist()
     rows = -(-len(times) // columns)
     made = look.figure(1.15 * columns, 1.75 * rows + 0.3)
     grid = made.subplots(rows, 1, squeeze=False)[:, 0]
     size = _size(history, times)
     for row, ax in enumerate(grid):
         shown = times[row * columns : (row + 1) * columns]
-        strip(ax, history, shown, columns, view, size=size)
-    if title:
+        strip(ax, history, shown, columns, (azimuth, elevation), size=size)
+    if text("title", title):
         made.suptitle(title, fontsize=10)
     return made
 

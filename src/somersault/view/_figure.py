@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.numbers import numbers
 from somersault.attitude import AXES, in_sequence
 from somersault.attitude import Axes as BodyAxes
 from somersault.model import Model, body_frames, centre_of_mass, model_shapes
@@ -39,7 +40,7 @@ def camera(azimuth: float, elevation: float, axes: BodyAxes = AXES) -> Array:
     >>> camera(0.0, 0.0).round(12).tolist()  # from the front: the body's left is on the right
     [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]
     """
-    a, e = np.radians([azimuth, elevation])
+    a, e = np.radians(numbers("azimuth and elevation", [azimuth, elevation], 2))
     eye = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
     right = np.array([-np.sin(a), np.cos(a), 0.0])
     seen = np.stack([right, np.cross(eye, right), eye])

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from somersault.view import style as look
+from somersault.view._look import several
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -42,6 +43,7 @@ def time_histories(history: History, title: str = "") -> Figure:
     """
     from matplotlib.figure import Figure
 
+    (history,) = several("history", history, 1, 1)
     time, angles, joints = history.times, history.angles, history.model.coordinates
     rows = 3 if joints else 2
     picture = Figure(figsize=(7.2, 1.2 + 1.9 * rows), layout="constrained")

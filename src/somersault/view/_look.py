@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from somersault._core.checks import shown, truth, whole_number
+from somersault._core.checks import name_list, shown, truth, whole_number
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import numbers
 from somersault.history import History
@@ -72,7 +72,7 @@ class Look:
         put(self, "camera", (azimuth, elevation))
         for name in ("follow", "charts", "ground"):
             put(self, name, truth(name, getattr(self, name)))
-        names = (self.vectors,) if isinstance(self.vectors, str) else tuple(self.vectors)
+        names = _row(self.vectors)
         if unknown := [name for name in names if name not in VECTORS]:
             raise SomersaultError(
                 f"there is no vector {shown(unknown[0])}; give {' or '.join(map(repr, VECTORS))}"
@@ -80,7 +80,7 @@ class Look:
         put(self, "vectors", names)
         put(self, "ghosts", self.others)
         if self.labels is not None:
-            put(self, "labels", tuple(str(label) for label in _row(self.labels)))
+            put(self, "labels", name_list("labels", _row(self.labels)))
         if self.charts and self.size[0] < CHARTS_FROM:
             raise SomersaultError(
                 f"a picture {self.size[0]} pixels wide has no room for charts; give size at least "

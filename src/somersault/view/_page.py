@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from somersault._core.checks import name_list, text
 from somersault._core.errors import SomersaultError
 from somersault._core.files import write
 from somersault.view import style as look
@@ -76,6 +77,8 @@ def page(
     file = check_page(path)
     row = several("histories", histories, 1, _MOST_FLIGHTS)
     names = _labels(row, labels)
+    if title is not None:
+        text("title", title)
     heading = title or row[0].model.name
     write(file, _document(heading, page_record(row, names, heading)))
 
@@ -161,7 +164,7 @@ def _labels(histories: Sequence[History], labels: Sequence[str] | None) -> list[
     if labels is None:
         names = [history.model.name for history in histories]
         return names if len(names) == 1 else [f"{k}. {name}" for k, name in enumerate(names, 1)]
-    given = [labels] if isinstance(labels, str) else [str(label) for label in labels]
+    given = [labels] if isinstance(labels, str) else list(name_list("labels", labels))
     if len(given) != len(histories):
         raise SomersaultError(
             f"there are {len(histories)} histories and {len(given)} labels; give one for each"

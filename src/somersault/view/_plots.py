@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from somersault._core.checks import shown
+from somersault._core.errors import SomersaultError
 from somersault.view.charts import filled, locus, stroboscopic
 from somersault.view.style import BLUE, GREEN, figure, label, style
 
@@ -34,6 +36,7 @@ def stability_chart(chart: xr.Dataset) -> Figure:
     >>> with TemporaryDirectory() as folder:
     ...     so.view.stability_chart(chart).savefig(f"{folder}/chart.svg")
     """
+    _require("chart", chart, "stable")
     y_name, x_name = (str(name) for name in chart.stable.dims)
     x, y = chart[x_name].values, chart[y_name].values
     with style():
@@ -87,6 +90,7 @@ def root_loci(loci: xr.Dataset) -> Figure:
     >>> with TemporaryDirectory() as folder:
     ...     so.view.root_loci(loci).savefig(f"{folder}/roots.svg")
     """
+    _require("root_locus", loci, "growth")
     (name,) = (str(n) for n in loci.coords)
     values = loci[name].values
     roots = loci.growth.values + 1j * loci.frequency.values
@@ -104,3 +108,13 @@ def root_loci(loci: xr.Dataset) -> Figure:
 def _axis(data: xr.Dataset, name: str) -> str:
     kind, _, rest = name.partition(".")
     return f"{kind} of {rest.replace('_', ' ')} ({data[name].attrs['units']})"
+
+
+def _require(made_by: str, data: Any, variable: str) -> None:
+    """SomersaultError for what is not a dataset of that function's."""
+    import xarray as xr
+
+    if not isinstance(data, xr.Dataset) or variable not in data:
+        raise SomersaultError(
+            f"what is drawn must be what somersault.stability.{made_by} gives, not {shown(data)}"
+        )

@@ -115,8 +115,11 @@ class JointTakeoff(metaclass=Registry):
         """Numbers as floats, rows as tuples; SomersaultError for what is neither."""
         where = f"joint {joint.name}"
         changes: dict[str, Any] = {}
+        defaults = {one.name: one.default for one in fields(self)}
         for name, what in _declared.declared(self).items():
-            value = _declared.checked(where, joint, name, what, getattr(self, name))
+            given = getattr(self, name)
+            given = defaults[name] if given is None else given
+            value = _declared.checked(where, joint, name, what, given)
             changes[name] = value
             if what.least is not None and isinstance(value, float) and value < what.least:
                 raise SomersaultError(

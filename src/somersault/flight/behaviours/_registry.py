@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError
 
 
@@ -83,7 +84,7 @@ def behaviour_of(motion: Any) -> type[Any]:
         return Registry.classes["as modelled"]
     if not isinstance(motion, str) or motion not in behaviour_names():
         raise SomersaultError(
-            f"{motion!r} is no motion of a joint; use {_listed(behaviour_names())}"
+            f"{shown(motion)} is no motion of a joint; use {_listed(behaviour_names())}"
         )
     return Registry.classes[motion]
 

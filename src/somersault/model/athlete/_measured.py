@@ -13,6 +13,7 @@ from typing import Any, Literal
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault.model._model import Model
 from somersault.model.athlete._athlete import Part, Physique, Shoulders, athlete_model, joined
@@ -75,9 +76,9 @@ def athlete_from_measurements(
         raise SomersaultError(
             "measurements need the yeadon package; pip install somersault[yeadon]"
         ) from None
-    if densities not in ("Chandler", "Clauser", "Dempster"):
+    if not isinstance(densities, str) or densities not in ("Chandler", "Clauser", "Dempster"):
         raise SomersaultError(
-            f"densities is {densities!r}; give 'Chandler', 'Clauser' or 'Dempster'"
+            f"densities is {shown(densities)}; give 'Chandler', 'Clauser' or 'Dempster'"
         )
     metres, measured = read_measurements(source, human_type.measnames)
     human = _weighed(human_type, metres, densities)
@@ -89,7 +90,7 @@ def athlete_from_measurements(
 def _mass(value: Any) -> float:
     if isinstance(value, (int, float, np.number)) and 10 <= value <= 250:
         return float(value)
-    raise SomersaultError(f"mass is {value!r}; give 10 to 250 kg")
+    raise SomersaultError(f"mass is {shown(value)}; give 10 to 250 kg")
 
 
 def _weighed(human_type: Any, metres: dict[str, float], densities: str) -> Any:

@@ -12,10 +12,11 @@ import math
 import os
 import re
 from collections.abc import Iterable, Mapping
-from pathlib import Path
 from typing import Any
 
+from somersault._core.checks import file_path, shown
 from somersault._core.errors import SomersaultError
+from somersault._core.files import read_bytes
 
 _MOST_BYTES = 100_000
 _FACTOR, _MASS = "measurementconversionfactor", "totalmass"
@@ -65,12 +66,11 @@ def read_measurements(
 
 def _read(source: str | os.PathLike[str]) -> tuple[str, dict[str, str]]:
     """The file's name, and what it gives each name."""
+    path = file_path("the measurements, unless they are given by name,", source)
     try:
-        path = Path(source)
-        with path.open("rb") as file:
-            data = file.read(_MOST_BYTES + 1)
+        data = read_bytes(path, _MOST_BYTES + 1)
         text = data.decode("utf-8")
-    except (TypeError, ValueError, OSError) as error:
+    except (ValueError, OSError) as error:
         reason = getattr(error, "strerror", None) or "it is no text file"
         raise SomersaultError(
             f"the measurements {str(source)!r} cannot be read ({reason}); give a text file or a "
@@ -101,5 +101,5 @@ def _positive(where: str, name: str, value: Any) -> float:
     except (TypeError, ValueError):
         number = math.nan
     if not 0 < number < math.inf:
-        raise SomersaultError(f"{where}: {name} is {value!r}; give a positive number")
+        raise SomersaultError(f"{where}: {name} is {shown(value)}; give a positive number")
     return number

@@ -9,6 +9,7 @@ from functools import reduce
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError
 from somersault.attitude import quaternion_product
 from somersault.model._load import load
@@ -83,7 +84,7 @@ def named_pose(model: str | os.PathLike[str] | Model, name: str) -> dict[str, fl
     0.42
     """
     if not isinstance(name, str) or name not in _POSES:
-        raise SomersaultError(f"no pose is called {name!r}; the poses are {', '.join(_POSES)}")
+        raise SomersaultError(f"no pose is called {shown(name)}; the poses are {', '.join(_POSES)}")
     body = load(model)
     there = {pair.name for pair in mirror_pairs(body)}
     ball = there >= set(_BALL)

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import one_of
+from somersault._core.checks import one_of, shown
 from somersault._core.errors import SomersaultError
 from somersault.model._model import Model
 from somersault.model.athlete._athlete import HEAD, Part, Physique, Shoulders, athlete_model, joined
@@ -81,7 +81,7 @@ def _within(what: str, value: float, unit: str, least: float, most: float) -> fl
     if least <= number <= most:
         return number
     hint = "; it looks like centimetres" if what == "height" and 50 <= number <= 250 else ""
-    raise SomersaultError(f"{what} is {value!r}{hint}; give {least:g} to {most:g} {unit}")
+    raise SomersaultError(f"{what} is {shown(value)}{hint}; give {least:g} to {most:g} {unit}")
 
 
 def _physique(table: Table, height: float, mass: float) -> Physique:

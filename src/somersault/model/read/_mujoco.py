@@ -47,6 +47,7 @@ def read_mjcf(path: Path, base: Base | None = None) -> Model:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # what MuJoCo will do otherwise one day
+            str(path).encode()  # MuJoCo takes names in UTF-8 alone
             spec = mujoco.MjSpec.from_file(str(path))
             compiled = spec.compile()
     except (ValueError, RuntimeError, OSError, AttributeError, mujoco.FatalError) as error:
