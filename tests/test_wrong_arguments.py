@@ -1,111 +1,315 @@
-"""Each argument of each public call, given a dozen wrong things: one sentence, or an answer.
+"""Each argument of each public call, given many wrong things: one sentence, or an answer.
 
-A room joins with a right call of each of its functions.
+`right_calls.py` has a call that works for each public name; here a test demands that it has all.
 """
 
 from __future__ import annotations
 
+import importlib
+import inspect
+import os
+import signal
 import warnings
-from collections.abc import Callable
+from collections.abc import Iterator
+from datetime import datetime
+from fnmatch import fnmatchcase
+from pathlib import Path
 from typing import Any
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from right_calls import CALLS, files, flown, furrer, spun
 
 import somersault as so
-from somersault import attitude, rigid
-from somersault import stability as st
 
-WRONG = [
-    None, True, "text", b"bytes", object(), 1j, float("nan"), float("inf"), -1.0, 10**400, [], {},
-    [1.0, "two"], [[1.0], [2.0, 3.0]], np.zeros((2, 5)), np.arange(7.0), {"shoulder": "straight"},
-    {"shoulder": [0.1, 0.2, 0.3]}, {3: 1.0}, ["elbow"], ("pose.shoulder", []), "stiffness.knee",
-    ("stiffness.knee", [0.0, 1.0]), ("pose.shoulder", 1.0, "high"),
-]  # fmt: skip
-CHART = {
-    "model": "furrer", "x": ("pose.shoulder", [0.5, 1.0]), "y": ("stiffness.shoulder", [0.0, 1.0]),
-    "damping": {"shoulder": 0.1}, "fixed": {"bodies.body.mass": 60.0}, "axis": 2, "lock": (),
-    "subsystem": "tilt", "energy": True,
-}  # fmt: skip
-RANGES = {
-    "model": "furrer", "along": ("stiffness.shoulder", -2, 4), "pose": {"shoulder": 1.3},
-    "axis": 2, "lock": (), "subsystem": "tilt", "samples": 5,
-}  # fmt: skip
-THREE, FOUR = [1.0, 2.0, 2.5], [1.0, 0.0, 0.0, 0.0]
-SPIN = so.spin("furrer", pose={"shoulder": 1.3})
-TUMBLE = rigid.RigidMotion(THREE, [0.1, 1.0, 0.2])
-RIGHT: dict[Callable[..., Any], dict[str, Any]] = {
-    so.spin: {"model": "furrer", "axis": 2, "pose": {"shoulder": 1.3}},
-    SPIN.linear: {
-        "stiffness": {"shoulder": 1.0}, "damping": {"shoulder": 0.1}, "lock": (), "rate": 1.0,
-    },
-    SPIN.linear().subsystem: {"coordinate": "tilt"},
-    st.chart: CHART,
-    st.growth_rates: {
-        "model": "furrer", "quantities": {"pose.shoulder": [1.0, 1.2]}, "stiffness": {},
-        "damping": {"shoulder": 0.1}, "axis": 2, "lock": (), "subsystem": None,
-    },
-    st.root_locus: {k: v for k, v in RANGES.items() if k != "samples"}
-    | {"along": ("stiffness.shoulder", [0.0, 1.0]), "fixed": {}},
-    st.stable_ranges: RANGES,
-    st.stable_ranges_by_case: RANGES | {"pose": {"shoulder": [1.0, 1.3]}},
-    st.joint_roots: {
-        "model": "furrer", "pose": {}, "stiffness": {"shoulder": 1.0}, "damping": {}, "lock": (),
-    },
-    st.principal_inertias: {"model": "furrer", "pose": {}},
-    st.principal_axes: {"inertia": np.diag(THREE)},
-    st.locked_speeds: {"model": so.load("furrer"), "lock": "shoulder"},
-    rigid.RigidMotion: {"inertias": THREE, "omega0": [0.1, 1.0, 0.2], "attitude0": FOUR},
-    rigid.RigidMotion.from_momentum: {"inertias": THREE, "momentum": 1.0, "attitude0": FOUR},
-    TUMBLE.omega: {"t": 1.0},
-    TUMBLE.quaternion: {"t": 1.0},
-    TUMBLE.angles: {"t": 1.0},
-    TUMBLE.momentum_angles: {"t": 1.0},
-    rigid.energy_bounds: {"inertias": THREE, "momentum": 1.0},
-    rigid.energy_curve: {"inertias": THREE, "energy": 0.3, "points": 5, "momentum": 1.0},
-    rigid.euler_rates: {"inertias": THREE, "omega": THREE},
-    rigid.growth_angle: {"k1": 0.5, "k3": -0.5, "N": 10.0},
-    rigid.gyric_matrices: {"I1": 1.0, "I2": 2.0, "I3": 2.5},
-    rigid.gyric_roots: {"k1": 0.5, "k3": -0.5},
-    rigid.inertia_ratios: {"I1": 1.0, "I2": 2.0, "I3": 2.5},
-    rigid.inertias_from_ratios: {"k1": 0.5, "k3": -0.5},
-    rigid.kind_of_motion: {"inertias": THREE, "omega": THREE, "tolerance": 0.0},
-    rigid.momentum_direction: {"tilt": 0.1, "twist": 0.2},
-    rigid.quadrant: {"k1": 0.5, "k3": -0.5},
-    rigid.separatrix: {"inertias": THREE, "points": 5},
-    rigid.tilt_and_twist: {"cosines": THREE},
-    attitude.as_axes: {"axes": (2, 1, 3)},
-    attitude.angle_rates: {"axes": (2, 1, 3), "angles": [0.1, 0.2, 0.3], "omega": THREE},
-    attitude.body_rates: {"axes": (2, 1, 3), "angles": [0.1, 0.2, 0.3], "rates": THREE},
-    attitude.angles_from_matrix: {"cosines": np.eye(3)},
-    attitude.angles_from_quaternion: {"quaternion": FOUR, "axes": (2, 1, 3)},
-    attitude.direction_cosines: {"somersault": 0.1, "tilt": 0.2, "twist": 0.3},
-    attitude.matrix_from_quaternion: {"quaternion": FOUR},
-    attitude.quaternion_conjugate: {"quaternion": FOUR},
-    attitude.quaternion_from_angles: {
-        "somersault": 0.1, "tilt": 0.2, "twist": 0.3, "axes": (2, 1, 3)
-    },
-    attitude.quaternion_from_matrix: {"matrix": np.eye(3)},
-    attitude.quaternion_product: {"first": FOUR, "second": FOUR},
-    attitude.unwrapped_angles: {"quaternions": [FOUR, FOUR], "axes": (2, 1, 3)},
-    attitude.side: {"axes": (2, 1, 3)},
-}  # fmt: skip
-ARGUMENTS = [
-    pytest.param(call, name, id=f"{call.__qualname__}-{name}")
-    for call, right in RIGHT.items()
-    for name in right
-]
+LONGEST = 20  # s
+SHARE = 8
+LIGHT = ("attitude", "dynamics", "history", "model", "motion", "rigid", "spec")  # soon done
+MOST_CHARACTERS = 850
+WRONG: dict[str, Any] = {
+    "None": None,
+    "true": True,
+    "text": "x",
+    "empty": "",
+    "bytes": b"",
+    "zero": 0,
+    "negative": -1,
+    "nan": float("nan"),
+    "inf": float("inf"),
+    "huge": 10**400,
+    "long": 10**5000,
+    "tiny": 1e-320,
+    "complex": 1j,
+    "list": [],
+    "table": {},
+    "object": object(),
+    "type": float,
+    "function": len,
+    "date": datetime(2024, 1, 1),
+    "words": ["x", "y"],
+    "mixed": [1.0, "two"],
+    "ragged": [[1.0], [2.0, 3.0]],
+    "matrix": np.zeros((2, 5)),
+    "row": np.arange(7.0),
+    "none": np.zeros(0),
+    "texts": np.array(["a", "b"]),
+    "objects": np.array([None, 1], object),
+    "nans": [float("nan")] * 3,
+    "complexes": np.array([1j, 2.0]),
+    "table of text": {"shoulder": "straight"},
+    "table of rows": {"shoulder": [0.1, 0.2, 0.3]},
+    "table by number": {3: 1.0},
+    "pair": ("pose.shoulder", []),
+    "name": "stiffness.knee",
+    "triple": ("pose.shoulder", 1.0, "high"),
+    "set": {1, 2},
+    "generator": (k for k in "ab"),
+    "nothing there": Path("none.xml"),
+    "folder": Path("folder"),
+    "pipe": Path("pipe"),
+    "zero byte": "a\0b",
+    "not UTF-8": "\udce9.xml",
+    "bytes of a name": b"main.toml",
+    "long name": "x" * 100_000,
+    "model": furrer(),
+    "spin": spun(),
+    "flight": flown(),
+    "takeoff": so.Takeoff(),
+}
+ROOMS = (
+    "attitude",
+    "dynamics",
+    "ensembles",
+    "flight",
+    "history",
+    "model",
+    "motion",
+    "rigid",
+    "simulation",
+    "spec",
+    "stability",
+    "thesis",
+    "view",
+)
+# What nobody calls with things of his own, and why: the end of a name with * is any.
+SYMBOLS = "an algorithm over symbols, for whoever writes equations of his own"
+MADE = "the package makes it, of what it has checked"
+AUTHORS = "for whoever writes a behaviour, a simulation, a format or a figure in Python"
+NOT_FOR_USERS = {
+    **dict.fromkeys(
+        (
+            "Composite*",
+            "Expression",
+            "Link",
+            "Momentum",
+            "Tree*",
+            "composite_bodies",
+            "constrained_dynamics",
+            "forward_dynamics",
+            "inverse_dynamics",
+            "link_tree",
+            "mass_matrix",
+            "momentum",
+            "outboard_inertia",
+            "placements",
+            "spring_torques",
+        ),
+        SYMBOLS,
+    ),
+    **dict.fromkeys(
+        (
+            "Ensemble",
+            "EnsembleSpec",
+            "Plan",
+            "Plan.drawn",
+            "Batch*",
+            "Begun*",
+            "Flight",
+            "Flights",
+            "Flights.run",
+            "Flights.sound",
+            "Flights.with_varied",
+            "Landing",
+            "Release",
+            "Swing",
+            "Swing.stroboscopic_picture",
+            "Mount",
+            "Pair",
+            "RecordedBase*",
+            "LinearSpin",
+            "Mode",
+            "PrincipalAxes",
+            "Spin",
+        ),
+        MADE,
+    ),
+    **dict.fromkeys(
+        (
+            "JointTakeoff",
+            "JointTakeoff.*",
+            "Prop.torque",
+            "History",
+            "Simulation*",
+            "Endings*",
+            "Target",
+            "Variable",
+            "Motion",
+            "Path*",
+            "as_moves",
+            "check_rows",
+            "held",
+            "increasing",
+            "moves",
+            "polynomial",
+            "straight",
+            "value",
+            "Unfit",
+            "read_as",
+            "written_as",
+            "structured_within",
+            "structured",
+            "Claim*",
+            "Entry*",
+            "Erratum",
+            "Result",
+            "Table",
+            "number",
+            "statement",
+            "verdict",
+            "Filmed*",
+            "summary",
+            "draw_pose",
+            "strip",
+        ),
+        AUTHORS,
+    ),
+}
 
 
-@pytest.mark.parametrize(("call", "name"), ARGUMENTS)
-def test_one_sentence_or_an_answer(call: Callable[..., Any], name: str) -> None:
-    right = RIGHT[call]
+@pytest.fixture(autouse=True)
+def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.chdir(tmp_path)
+    Path("folder").mkdir()
+    os.mkfifo("pipe")
+    files()
+    yield
+    plt.close("all")
+
+
+def _arguments(call: Any) -> dict[str, inspect.Parameter]:
+    """What a call takes, without whose method it is."""
+    try:
+        parameters = inspect.signature(call).parameters
+    except ValueError:
+        return {}
+    return {name: p for name, p in parameters.items() if name != "self"}
+
+
+def _public() -> Iterator[tuple[str, Any]]:
+    """Every public function, class and method that takes something, by its name."""
+    for room in ROOMS:
+        module = importlib.import_module(f"somersault.{room}")
+        names = getattr(module, "__all__", None) or [
+            name
+            for name, thing in vars(module).items()
+            if not name.startswith("_") and getattr(thing, "__module__", "") == module.__name__
+        ]
+        for name in names:
+            thing = getattr(module, name)
+            things = {name: thing}
+            if inspect.isclass(thing):
+                held = inspect.getmembers(
+                    thing, lambda m: inspect.isfunction(m) or inspect.ismethod(m)
+                )
+                things |= {f"{name}.{method}": call for method, call in held if method[0] != "_"}
+            for called, one in things.items():
+                called_so = inspect.isclass(one) or inspect.isroutine(one)
+                if called_so and _arguments(one):
+                    yield f"{room}.{called}", one
+
+
+PUBLIC = dict(_public())
+
+
+def _tried(name: str) -> list[str]:
+    """The arguments of a call: those of its signature, and the options that its right call has."""
+    signature = _arguments(PUBLIC[name]) if name in PUBLIC else {}
+    plain = [n for n, p in signature.items() if p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)]
+    return [*plain, *(n for n in CALLS[name]()[1] if n not in plain)]
+
+
+def one_sentence(mistake: so.SomersaultError) -> None:
+    said = str(mistake)
+    assert said.strip()
+    assert "\n" not in said
+    assert len(said) <= MOST_CHARACTERS
+    said.encode()  # a shell can print it
+
+
+def _too_long(*_: Any) -> None:
+    raise TimeoutError(f"longer than {LONGEST} s")
+
+
+def check(name: str, argument: str, wrong: str) -> None:
+    """One sentence or an answer, in time, and no file left by what was refused."""
+    call, right = CALLS[name]()
+    before = sorted(os.listdir())
+    signal.signal(signal.SIGALRM, _too_long)
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("error")
+        warnings.simplefilter("ignore", so.SomersaultWarning)
+        signal.alarm(LONGEST)
+        try:
+            call(**{**right, argument: WRONG[wrong]})
+        except so.SomersaultError as mistake:
+            one_sentence(mistake)
+            assert sorted(os.listdir()) == before
+        finally:
+            signal.alarm(0)
+            plt.close("all")
+
+
+def _is_light(name: str) -> bool:
+    return name.partition(".")[0] in LIGHT
+
+
+def test_every_public_call_has_a_right_one() -> None:
+    """So that what is new is tested here by itself: add a call of it to `right_calls.CALLS`."""
+    missing = [
+        name
+        for name in PUBLIC
+        if name not in CALLS
+        and not any(fnmatchcase(name.partition(".")[2], left) for left in NOT_FOR_USERS)
+    ]
+    assert not missing
+
+
+def test_nothing_is_left_out_that_is_not_there() -> None:
+    ends = [name.partition(".")[2] for name in PUBLIC]
+    assert all(any(fnmatchcase(end, left) for end in ends) for left in NOT_FOR_USERS)
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_the_right_call_works(name: str) -> None:
+    call, right = CALLS[name]()
     call(**right)
-    for wrong in WRONG:
-        with warnings.catch_warnings(), np.errstate(all="ignore"):
-            warnings.simplefilter("error", RuntimeWarning)
-            try:
-                call(**{**right, name: wrong})
-            except so.SomersaultError as mistake:
-                assert "\n" not in str(mistake)
-                assert len(str(mistake)) < 400
+
+
+@pytest.mark.parametrize("name", [name for name in CALLS if _is_light(name)])
+def test_one_sentence_or_an_answer(name: str) -> None:
+    """A share of the wrong things, another one for each argument."""
+    _check_share(name, SHARE)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CALLS)
+def test_one_sentence_or_an_answer_to_more(name: str) -> None:
+    """All of them where a call is soon done."""
+    _check_share(name, 1 if _is_light(name) else SHARE)
+
+
+def _check_share(name: str, share: int) -> None:
+    for place, argument in enumerate(_tried(name)):
+        for wrong in list(WRONG)[place % share :: share]:
+            check(name, argument, wrong)

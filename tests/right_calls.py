@@ -1,0 +1,1030 @@
+"""For each public function, class and method a call that works, for tests to change.
+
+A value is checked where it is used: what a `Takeoff`, a `Body` or a `Vary` was given is called
+together with what uses it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import somersault as so
+from somersault import attitude, ensembles, flight, model, motion, rigid, spec, thesis, view
+from somersault import dynamics as dy
+from somersault import stability as st
+
+Call = Callable[..., Any]
+Right = Mapping[str, Any]
+THREE, FOUR, EYE = [1.0, 2.0, 2.5], [1.0, 0.0, 0.0, 0.0], np.eye(3)
+POSE = {"shoulder": 1.3}
+MOVES = {"left_shoulder": [(0.0, 1.4), (0.1, 0.2)]}
+TIMES = np.linspace(0.0, 0.5, 51)
+INERTIA = ((1.0, 0.0, 0.0), (0.0, 1.1, 0.0), (0.0, 0.0, 1.2))
+TAKEOFF = so.Takeoff(spin=5.0)
+
+
+# --------------------------------------------------------------------- what calls are made of
+
+
+@cache
+def furrer() -> so.Model:
+    return so.load("furrer")
+
+
+@cache
+def gymnast() -> so.Model:
+    return so.load("gymnast")
+
+
+@cache
+def spun() -> so.Spin:
+    return so.spin("furrer", pose=POSE)
+
+
+@cache
+def tumble() -> rigid.RigidMotion:
+    return rigid.RigidMotion(THREE, [0.1, 1.0, 0.2])
+
+
+@cache
+def equations() -> so.Equations:
+    return so.Equations("furrer")
+
+
+@cache
+def maneuver() -> so.Maneuver:
+    return so.Maneuver.moves("furrer", MOVES, TAKEOFF, 0.1)
+
+
+@cache
+def flown() -> so.Flight:
+    return so.fly("furrer", TAKEOFF, 0.1, samples=3, gravity=(0.0, 0.0, -9.81))
+
+
+@cache
+def arms() -> so.Motion:
+    return so.Motion.moves("furrer", MOVES)
+
+
+@cache
+def mount() -> so.Mount:
+    bar = so.Body(
+        "bar", -1, 0.0, (0.0,) * 3, ((0.0,) * 3,) * 3, joints=(so.Joint("bar", "hinge", (0, 1, 0)),)
+    )
+    return so.mounted(furrer(), bar, (0.0, 0.0, 1.0))
+
+
+@cache
+def swung() -> so.Swing:
+    return so.swing(mount().held, {"bar": 1.0}, 0.1, samples=3)
+
+
+@cache
+def scattered() -> so.Ensemble:
+    return so.ensemble("furrer", TAKEOFF, 0.1, {"lean": NORMAL}, size=64, against={"tilt": 0.0})
+
+
+@cache
+def drawn() -> so.Ensemble:
+    vary = {"lean": NORMAL, "turn": so.Vary(adds_to="takeoff.twist", normal=(0.0, 0.1))}
+    return so.ensemble(
+        "furrer", TAKEOFF, 0.1, vary, size=256, sequence="saltelli", against={"tilt": 0.0}
+    )
+
+
+@cache
+def planned() -> ensembles.Plan:
+    return ensembles.plan(flight.flights("furrer", TAKEOFF, 0.1), {"lean": NORMAL}, 4)
+
+
+@cache
+def charted() -> Any:
+    return st.chart(**CHART)
+
+
+@cache
+def locus() -> Any:
+    return st.root_locus(**LOCUS)
+
+
+NORMAL = so.Vary(adds_to="takeoff.tilt", normal=(0.0, 0.1))
+CHART = {
+    "model": "furrer",
+    "x": ("pose.shoulder", [0.5, 1.0]),
+    "y": ("stiffness.shoulder", [0.0, 1.0]),
+    "damping": {"shoulder": 0.1},
+    "fixed": {"bodies.body.mass": 60.0},
+    "axis": 2,
+    "lock": (),
+    "subsystem": "tilt",
+    "energy": True,
+}
+RANGES = {
+    "model": "furrer",
+    "along": ("stiffness.shoulder", -2, 4),
+    "pose": POSE,
+    "axis": 2,
+    "lock": (),
+    "subsystem": "tilt",
+    "samples": 5,
+}
+LOCUS = {k: v for k, v in RANGES.items() if k != "samples"} | {
+    "along": ("stiffness.shoulder", [0.0, 1.0]),
+    "fixed": {},
+}
+LOOK = {"size": (64, 64)}
+SPEC = {"model": "furrer", "duration": 0.1, "takeoff": {"spin": 5.0}}
+
+
+def files() -> None:
+    """Write the files that right calls read to the folder in which they are called."""
+    from fuzz import good
+
+    names = {"arms.csv": good.csv, "hip.csv": good.column, "body.txt": good.measurements}
+    for name, folders in names.items():
+        Path(name).write_bytes(next(iter(folders()[0].values())) or b"")
+    Path("main.toml").write_text(
+        'model = "furrer"\nduration = 0.1\n[takeoff]\nspin = 5.0\n', encoding="utf-8"
+    )
+    flown().save("recorded.nc")
+    scattered().dataset.to_netcdf("store.nc", engine="h5netcdf")
+
+
+# ------------------------------------------------------------------------- values, as they are used
+
+
+def _takeoff(**given: Any) -> Any:
+    return so.fly("furrer", so.Takeoff(**given), 0.02, samples=2)
+
+
+def _joint_takeoff(make: Callable[..., Any]) -> Call:
+    def call(**given: Any) -> Any:
+        return so.fly("furrer", so.Takeoff(spin=5.0, joints={"left_shoulder": make(**given)}), 0.02)
+
+    return call
+
+
+def _body(**given: Any) -> Any:
+    arm = so.Body("arm", 0, 1.0, (0.0, 0.0, 0.1), INERTIA, joints=(so.Joint("hinge", "hinge"),))
+    return repr(so.Model("thing", True, (so.Body(**given), arm)))
+
+
+def _joint(**given: Any) -> Any:
+    base = so.Body("base", -1, 2.0, (0.0, 0.0, 0.0), INERTIA)
+    joints = (so.Joint("lead", "hinge", (0.0, 1.0, 0.0)), so.Joint(**given))
+    return repr(
+        so.Model(
+            "thing", True, (base, so.Body("arm", 0, 1.0, (0.0, 0.0, 0.1), INERTIA, joints=joints))
+        )
+    )
+
+
+def _follow(**given: Any) -> Any:
+    return _joint(name="after", kind="hinge", follows=model.Follow(**given))
+
+
+def _vary(**given: Any) -> Any:
+    vary = {"x": so.Vary(**{"sets": "takeoff.tilt", **given})}
+    size = None if {"values", "samples"} & set(given) else 2
+    return ensembles.plan(flight.flights("furrer", TAKEOFF, 0.02), vary, size=size).varied(0, 2)
+
+
+def _report(**given: Any) -> Any:
+    return flight.flights("furrer", TAKEOFF, 0.02, report=so.Report(**given)).variables
+
+
+def _prop(**given: Any) -> Any:
+    return so.swing(
+        mount().held, {"bar": 1.0}, 0.02, stops={"left_shoulder": so.Prop(**given)}, samples=2
+    )
+
+
+# ------------------------------------------------------------------------------------- the table
+
+ROTATED = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+_FILM = {"fps": 30, "speed": 1.0, **LOOK}
+_PICTURED = {
+    "film": {"path": "film.gif", **_FILM, "beside": ()},
+    "frame": {"time": 0.05, **LOOK},
+    "page": {"path": "page.html", "title": "a flight"},
+    "picture": {"path": "picture.png", "times": [0.0, 0.05], "columns": 2, **LOOK},
+    "stroboscopic_picture": {"path": "picture.png", "times": 3, **LOOK},
+}
+
+# Of each public name a function that gives the call and its right arguments.
+CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
+    # --- stability
+    "stability.spin": lambda: (so.spin, {"model": "furrer", "axis": 2, "pose": POSE}),
+    "stability.Spin.linear": lambda: (
+        spun().linear,
+        {"stiffness": {"shoulder": 1.0}, "damping": {"shoulder": 0.1}, "lock": (), "rate": 1.0},
+    ),
+    "stability.LinearSpin.subsystem": lambda: (spun().linear().subsystem, {"coordinate": "tilt"}),
+    "stability.chart": lambda: (st.chart, CHART),
+    "stability.growth_rates": lambda: (
+        st.growth_rates,
+        {
+            "model": "furrer",
+            "quantities": {"pose.shoulder": [1.0, 1.2]},
+            "stiffness": {},
+            "damping": {"shoulder": 0.1},
+            "axis": 2,
+            "lock": (),
+            "subsystem": None,
+        },
+    ),
+    "stability.root_locus": lambda: (st.root_locus, LOCUS),
+    "stability.stable_ranges": lambda: (st.stable_ranges, RANGES),
+    "stability.stable_ranges_by_case": lambda: (
+        st.stable_ranges_by_case,
+        RANGES | {"pose": {"shoulder": [1.0, 1.3]}},
+    ),
+    "stability.joint_roots": lambda: (
+        st.joint_roots,
+        {"model": "furrer", "pose": {}, "stiffness": {"shoulder": 1.0}, "damping": {}, "lock": ()},
+    ),
+    "stability.principal_inertias": lambda: (
+        st.principal_inertias,
+        {"model": "furrer", "pose": {}},
+    ),
+    "stability.principal_axes": lambda: (st.principal_axes, {"inertia": np.diag(THREE)}),
+    "stability.locked_speeds": lambda: (st.locked_speeds, {"model": furrer(), "lock": "shoulder"}),
+    "stability.holding_torques": lambda: (
+        st.holding_torques,
+        {"model": furrer(), "q": furrer().home[None], "compiled": False},
+    ),
+    # --- rigid
+    "rigid.RigidMotion": lambda: (
+        rigid.RigidMotion,
+        {"inertias": THREE, "omega0": [0.1, 1.0, 0.2], "attitude0": FOUR},
+    ),
+    "rigid.RigidMotion.from_momentum": lambda: (
+        rigid.RigidMotion.from_momentum,
+        {"inertias": THREE, "momentum": 1.0, "attitude0": FOUR},
+    ),
+    "rigid.RigidMotion.omega": lambda: (tumble().omega, {"t": 1.0}),
+    "rigid.RigidMotion.quaternion": lambda: (tumble().quaternion, {"t": 1.0}),
+    "rigid.RigidMotion.angles": lambda: (tumble().angles, {"t": 1.0}),
+    "rigid.RigidMotion.momentum_angles": lambda: (tumble().momentum_angles, {"t": 1.0}),
+    "rigid.energy_bounds": lambda: (rigid.energy_bounds, {"inertias": THREE, "momentum": 1.0}),
+    "rigid.energy_curve": lambda: (
+        rigid.energy_curve,
+        {"inertias": THREE, "energy": 0.3, "points": 5, "momentum": 1.0},
+    ),
+    "rigid.euler_rates": lambda: (rigid.euler_rates, {"inertias": THREE, "omega": THREE}),
+    "rigid.growth_angle": lambda: (rigid.growth_angle, {"k1": 0.5, "k3": -0.5, "N": 10.0}),
+    "rigid.gyric_matrices": lambda: (rigid.gyric_matrices, {"I1": 1.0, "I2": 2.0, "I3": 2.5}),
+    "rigid.gyric_roots": lambda: (rigid.gyric_roots, {"k1": 0.5, "k3": -0.5}),
+    "rigid.inertia_ratios": lambda: (rigid.inertia_ratios, {"I1": 1.0, "I2": 2.0, "I3": 2.5}),
+    "rigid.inertias_from_ratios": lambda: (rigid.inertias_from_ratios, {"k1": 0.5, "k3": -0.5}),
+    "rigid.kind_of_motion": lambda: (
+        rigid.kind_of_motion,
+        {"inertias": THREE, "omega": THREE, "tolerance": 0.0},
+    ),
+    "rigid.momentum_direction": lambda: (rigid.momentum_direction, {"tilt": 0.1, "twist": 0.2}),
+    "rigid.quadrant": lambda: (rigid.quadrant, {"k1": 0.5, "k3": -0.5}),
+    "rigid.separatrix": lambda: (rigid.separatrix, {"inertias": THREE, "points": 5}),
+    "rigid.tilt_and_twist": lambda: (rigid.tilt_and_twist, {"cosines": THREE}),
+    # --- attitude
+    "attitude.as_axes": lambda: (attitude.as_axes, {"axes": (2, 1, 3)}),
+    "attitude.angle_rates": lambda: (
+        attitude.angle_rates,
+        {"axes": (2, 1, 3), "angles": [0.1, 0.2, 0.3], "omega": THREE},
+    ),
+    "attitude.body_rates": lambda: (
+        attitude.body_rates,
+        {"axes": (2, 1, 3), "angles": [0.1, 0.2, 0.3], "rates": THREE},
+    ),
+    "attitude.angles_from_matrix": lambda: (attitude.angles_from_matrix, {"cosines": EYE}),
+    "attitude.angles_from_quaternion": lambda: (
+        attitude.angles_from_quaternion,
+        {"quaternion": FOUR, "axes": (2, 1, 3)},
+    ),
+    "attitude.direction_cosines": lambda: (
+        attitude.direction_cosines,
+        {"somersault": 0.1, "tilt": 0.2, "twist": 0.3},
+    ),
+    "attitude.from_sequence": lambda: (
+        attitude.from_sequence,
+        {"vector": THREE, "axes": (2, 1, 3)},
+    ),
+    "attitude.in_sequence": lambda: (attitude.in_sequence, {"vector": THREE, "axes": (2, 1, 3)}),
+    "attitude.matrix_from_quaternion": lambda: (
+        attitude.matrix_from_quaternion,
+        {"quaternion": FOUR},
+    ),
+    "attitude.quaternion_conjugate": lambda: (attitude.quaternion_conjugate, {"quaternion": FOUR}),
+    "attitude.quaternion_from_angles": lambda: (
+        attitude.quaternion_from_angles,
+        {"somersault": 0.1, "tilt": 0.2, "twist": 0.3, "axes": (2, 1, 3)},
+    ),
+    "attitude.quaternion_from_matrix": lambda: (attitude.quaternion_from_matrix, {"matrix": EYE}),
+    "attitude.quaternion_product": lambda: (
+        attitude.quaternion_product,
+        {"first": FOUR, "second": FOUR},
+    ),
+    "attitude.unwrapped_angles": lambda: (
+        attitude.unwrapped_angles,
+        {"quaternions": [FOUR, FOUR], "axes": (2, 1, 3)},
+    ),
+    "attitude.side": lambda: (attitude.side, {"axes": (2, 1, 3)}),
+    # --- model
+    "model.Body": lambda: (
+        _body,
+        {
+            "name": "base",
+            "parent": -1,
+            "mass": 2.0,
+            "com": (0.0, 0.0, 0.0),
+            "inertia": INERTIA,
+            "position": (0.0, 0.0, 0.0),
+            "rotation": ROTATED,
+            "joints": (),
+            "shapes": (),
+            "inertia_from": "file",
+        },
+    ),
+    "model.Joint": lambda: (
+        _joint,
+        {
+            "name": "hinge",
+            "kind": "hinge",
+            "axis": (1.0, 0.0, 0.0),
+            "anchor": (0.0, 0.0, 0.0),
+            "reference": 0.0,
+            "limits": (-1.0, 1.0),
+            "stiffness": 0.0,
+            "rest": 0.0,
+            "damping": 0.0,
+            "armature": 0.0,
+            "follows": None,
+        },
+    ),
+    "model.Follow": lambda: (_follow, {"leader": "lead", "factor": 1.0, "offset": 0.0}),
+    "model.Model": lambda: (
+        lambda **given: (repr(so.Model(**given)), so.Model(**given).home),
+        {
+            "name": "thing",
+            "free": True,
+            "bodies": furrer().bodies,
+            "ignored": (),
+            "axes": (2, 1, 3),
+            "plane": None,
+        },
+    ),
+    "model.Model.coordinate_slice": lambda: (furrer().coordinate_slice, {"name": "left_shoulder"}),
+    "model.Model.joint": lambda: (furrer().joint, {"name": "left_shoulder"}),
+    "model.Model.renamed": lambda: (furrer().renamed, {"name": "Carl"}),
+    "model.Model.speed_slice": lambda: (furrer().speed_slice, {"name": "left_shoulder"}),
+    "model.as_matrix": lambda: (model.as_matrix, {"array": EYE}),
+    "model.as_vector": lambda: (model.as_vector, {"array": np.array(THREE)}),
+    "model.athlete": lambda: (
+        so.athlete,
+        {
+            "height": 1.7,
+            "mass": 65.0,
+            "sex": "male",
+            "shoulders": "hinges",
+            "knees": False,
+            "name": "athlete",
+        },
+    ),
+    "model.athlete_from_measurements": lambda: (
+        so.athlete_from_measurements,
+        {
+            "source": "body.txt",
+            "mass": 70.0,
+            "densities": "Dempster",
+            "shoulders": "hinges",
+            "knees": False,
+            "name": "athlete",
+        },
+    ),
+    "model.base_on_its_joints": lambda: (model.base_on_its_joints, {"model": furrer()}),
+    "model.body_frames": lambda: (model.body_frames, {"model": furrer(), "q": [0.1, 0.2]}),
+    "model.body_velocities": lambda: (
+        model.body_velocities,
+        {"model": furrer(), "q": [0.1, 0.2], "u": [0.1, 0.2]},
+    ),
+    "model.centre_of_mass": lambda: (model.centre_of_mass, {"model": furrer(), "q": [0.1, 0.2]}),
+    "model.common_name": lambda: (
+        model.common_name,
+        {"left": "left_shoulder", "right": "right_shoulder"},
+    ),
+    "model.load": lambda: (so.load, {"source": "furrer", "axes": (2, 1, 3), "base": "free"}),
+    "model.merge_welded": lambda: (
+        model.merge_welded,
+        {"bodies": list(furrer().bodies), "free": True},
+    ),
+    **{
+        f"model.{call.__name__}": (lambda call=call: (call, {"model": furrer()}))  # type: ignore[misc]
+        for call in (
+            model.mirror_images,
+            model.mirror_pairs,
+            model.mjcf,
+            model.model_digest,
+            model.model_shapes,
+            model.named_pairs,
+            model.plain_form,
+            model.pose_names,
+        )
+    },
+    "model.mounted": lambda: (
+        so.mounted,
+        {
+            "model": furrer(),
+            "carrier": mount().held.bodies[0],
+            "position": (0.0, 0.0, 1.0),
+            "rotation": ROTATED,
+        },
+    ),
+    "model.named_pose": lambda: (so.named_pose, {"model": "gymnast", "name": "tuck"}),
+    "model.pose": lambda: (model.pose, {"model": furrer(), "angles": POSE}),
+    "model.reflection": lambda: (
+        model.reflection,
+        {"model": furrer(), "pair": model.mirror_pairs(furrer())[0]},
+    ),
+    "model.register_format": lambda: (model.register_format, {"ending": ".rods", "read": so.load}),
+    "model.segment_momenta": lambda: (
+        model.segment_momenta,
+        {"model": furrer(), "q": [0.1, 0.2], "omega": THREE, "u": [0.1, 0.2]},
+    ),
+    "model.sides": lambda: (model.sides, {"model": furrer(), "name": "shoulder"}),
+    "model.spread": lambda: (model.spread, {"model": furrer(), "values": POSE, "mirrored": True}),
+    "model.write_mjcf": lambda: (so.write_mjcf, {"model": furrer(), "path": "written.xml"}),
+    # --- motion
+    "motion.Motion.check": lambda: (arms().check, {"model": "furrer"}),
+    "motion.Motion.delayed": lambda: (arms().delayed, {"seconds": 0.1}),
+    "motion.Motion.joint_paths": lambda: (arms().joint_paths, {"model": "furrer", "duration": 0.1}),
+    "motion.Motion.mirrored": lambda: (arms().mirrored, {"model": "furrer"}),
+    "motion.Motion.moves": lambda: (so.Motion.moves, {"model": "furrer", "keyframes": MOVES}),
+    "motion.Motion.scaled": lambda: (arms().scaled, {"factor": 2.0}),
+    "motion.Motion.values": lambda: (arms().values, {"times": [0.0, 0.05]}),
+    "motion.low_pass": lambda: (
+        motion.low_pass,
+        {"samples": np.sin(TIMES), "rate": 100.0, "cutoff": 6.0},
+    ),
+    "motion.read_column": lambda: (motion.read_column, {"path": "hip.csv", "column": "hip"}),
+    "motion.read_motion": lambda: (
+        so.read_motion,
+        {
+            "path": "arms.csv",
+            "model": "furrer",
+            "names": {},
+            "ignore_others": True,
+            "degrees": False,
+            "cutoff": 6.0,
+            "rate": 50.0,
+            "start": 0.1,
+            "stop": 0.4,
+            "gap": 0.1,
+            "slack": 0.1,
+        },
+    ),
+    "motion.sampled_motion": lambda: (
+        so.sampled_motion,
+        {
+            "model": "furrer",
+            "times": TIMES,
+            "values": {"left_shoulder": 1.0 - TIMES},
+            "cutoff": 6.0,
+            "rate": 50.0,
+            "start": 0.1,
+            "stop": 0.4,
+            "gap": 0.1,
+            "slack": 0.1,
+            "source": "samples",
+        },
+    ),
+    # --- flight
+    "flight.BallisticPath": lambda: (
+        lambda **given: flight.BallisticPath(**given).at([0.0, 0.1]),
+        {"position": THREE, "velocity": THREE, "gravity": (0.0, 0.0, -9.81)},
+    ),
+    "flight.BallisticPath.at": lambda: (
+        flight.BallisticPath(THREE, THREE).at,
+        {"times": [0.0, 0.1]},
+    ),
+    "flight.BallisticPath.time_to": lambda: (
+        flight.BallisticPath(THREE, THREE).time_to,
+        {"height": 0.0},
+    ),
+    **{
+        f"flight.Flight.{name}": (lambda name=name, right=right: (getattr(flown(), name), right))  # type: ignore[misc]
+        for name, right in _PICTURED.items()
+    },
+    **{
+        f"flight.Swing.{name}": (lambda name=name, right=right: (getattr(swung(), name), right))  # type: ignore[misc]
+        for name, right in _PICTURED.items()
+        if name != "stroboscopic_picture"  # what swings stays in place
+    },
+    "flight.Flight.save": lambda: (flown().save, {"path": "flight.nc"}),
+    "flight.Flights.targets": lambda: (
+        flight.flights("furrer", TAKEOFF, 0.1).targets,
+        {"path": "takeoff.tilt"},
+    ),
+    "flight.JointTakeoff.locked": lambda: (_joint_takeoff(so.JointTakeoff.locked), {"angle": 0.1}),
+    "flight.JointTakeoff.free": lambda: (
+        _joint_takeoff(so.JointTakeoff.free),
+        {"angle": 0.1, "rate": 0.1},
+    ),
+    "flight.JointTakeoff.sprung": lambda: (
+        _joint_takeoff(so.JointTakeoff.sprung),
+        {"angle": 1.4, "rate": 0.1, "stiffness": 30.0, "damping": 0.1, "rest": 1.4, "hold": False},
+    ),
+    "flight.JointTakeoff.prescribed": lambda: (
+        _joint_takeoff(so.JointTakeoff.prescribed),
+        {"times": [0.0, 0.1], "angles": [1.4, 0.2]},
+    ),
+    "flight.JointTakeoff.compliant": lambda: (
+        _joint_takeoff(so.JointTakeoff.compliant),
+        {"stiffness": 30.0, "damping": 0.1, "times": [0.0, 0.1], "angles": [1.4, 0.2]},
+    ),
+    "flight.JointTakeoff.torque": lambda: (
+        _joint_takeoff(so.JointTakeoff.torque),
+        {"times": [0.0, 0.1], "torques": [0.0, 1.0], "angle": 0.1},
+    ),
+    "flight.JointTakeoff.coupled": lambda: (
+        _joint_takeoff(so.JointTakeoff.coupled),
+        {"leader": "right_shoulder", "factor": -1.0},
+    ),
+    "flight.Maneuver": lambda: (
+        lambda **given: so.Maneuver(**given).fly(),
+        {
+            "model": furrer(),
+            "takeoff": TAKEOFF,
+            "duration": 0.02,
+            "gravity": (0.0, 0.0, -9.81),
+            "accuracy": 1e-9,
+            "samples": 3,
+            "until": None,
+            "steps": 1000,
+        },
+    ),
+    "flight.Maneuver.changed": lambda: (maneuver().changed, {"duration": 0.2, "accuracy": 1e-8}),
+    "flight.Maneuver.compliant": lambda: (
+        maneuver().compliant,
+        {
+            "natural_frequency": 60.0,
+            "damping_ratio": 0.7,
+            "pose": 0.0,
+            "tape": True,
+            "stop_stiffness": 0.0,
+            "stop_damping": 0.0,
+        },
+    ),
+    "flight.Maneuver.fly": lambda: (maneuver().fly, {"samples": 3, "steps": 1000}),
+    "flight.Maneuver.from_takeoff": lambda: (maneuver().from_takeoff, {"takeoff": TAKEOFF}),
+    "flight.Maneuver.moves": lambda: (
+        so.Maneuver.moves,
+        {
+            "model": "furrer",
+            "keyframes": MOVES,
+            "takeoff": TAKEOFF,
+            "duration": 0.2,
+            "accuracy": 1e-8,
+        },
+    ),
+    "flight.Maneuver.off_nominal": lambda: (
+        maneuver().off_nominal,
+        {"somersault": 0.1, "tilt": 0.1, "twist": 0.1},
+    ),
+    "flight.Maneuver.parse": lambda: (so.Maneuver.parse, {"tables": SPEC, "beside": "."}),
+    "flight.Maneuver.read": lambda: (so.Maneuver.read, {"path": "main.toml"}),
+    "flight.Maneuver.save": lambda: (maneuver().save, {"path": "saved.toml"}),
+    "flight.Maneuver.scaled": lambda: (maneuver().scaled, {"factor": 2.0}),
+    "flight.Prop": lambda: (_prop, {"angle": 0.1, "side": 1, "stiffness": 1e4, "damping": 0.0}),
+    "flight.Report": lambda: (
+        _report,
+        {"quantities": ("tilt",), "extremes": ("tilt",), "history": ("tilt",), "samples": 3},
+    ),
+    "flight.Report.times": lambda: (
+        so.Report(samples=3, history=("tilt",)).times,
+        {"duration": 0.1},
+    ),
+    "flight.Takeoff": lambda: (
+        _takeoff,
+        {
+            "somersault": 0.1,
+            "tilt": 0.1,
+            "twist": 0.1,
+            "spin": 5.0,
+            "tilt_rate": 0.0,
+            "twist_rate": 0.0,
+            "position": THREE,
+            "velocity": THREE,
+            "joints": {},
+        },
+    ),
+    "flight.Takeoff.by_velocity": lambda: (
+        _takeoff,
+        {"quaternion": FOUR, "angular_velocity": THREE},
+    ),
+    "flight.Takeoff.by_momentum": lambda: (
+        _takeoff,
+        {"quaternion": FOUR, "angular_momentum": THREE},
+    ),
+    "flight.arm_tilt": lambda: (
+        so.arm_tilt,
+        {
+            "model": "gymnast",
+            "spin": 7.0,
+            "begin": 0.1,
+            "move": 0.2,
+            "raised": 3.1,
+            "lowered": 0.12,
+            "twists": None,
+            "duration": 0.5,
+        },
+    ),
+    "flight.cat_turn": lambda: (
+        so.cat_turn,
+        {"model": "gymnast", "cycles": 1, "torso": 0.7, "legs": None, "arms": 1.5, "move": 0.15},
+    ),
+    "flight.compliant": lambda: (
+        so.compliant,
+        {
+            "model": "furrer",
+            "takeoff": maneuver().takeoff,
+            "natural_frequency": 60.0,
+            "damping_ratio": 0.7,
+            "pose": 0.0,
+            "tape": True,
+            "stop_stiffness": 0.0,
+            "stop_damping": 0.0,
+        },
+    ),
+    "flight.deviated_flight": lambda: (
+        so.deviated_flight,
+        {
+            "spin": spun(),
+            "rate": 5.0,
+            "duration": 0.02,
+            "tilt": 0.01,
+            "somersault": 0.0,
+            "twist": 0.0,
+            "joints": {},
+            "stiffness": {"shoulder": 1.0},
+            "damping": {},
+            "lock": (),
+            "samples": 3,
+        },
+    ),
+    "flight.flights": lambda: (
+        flight.flights,
+        {
+            "model": "furrer",
+            "takeoff": TAKEOFF,
+            "duration": 0.1,
+            "report": ("tilt",),
+            "against": {"tilt": 0.0},
+            "until": None,
+            "accuracy": 1e-7,
+            "steps": 1000,
+        },
+    ),
+    "flight.fly": lambda: (
+        so.fly,
+        {
+            "model": "furrer",
+            "takeoff": TAKEOFF,
+            "duration": 0.02,
+            "gravity": (0.0, 0.0, -9.81),
+            "accuracy": 1e-9,
+            "samples": 3,
+            "until": None,
+            "steps": 1000,
+        },
+    ),
+    "flight.height_energy": lambda: (
+        flight.height_energy,
+        {
+            "equations": so.Equations(mount().held),
+            "q": mount().held.home,
+            "gravity": (0.0, 0.0, -9.81),
+        },
+    ),
+    "flight.hula": lambda: (
+        so.hula,
+        {
+            "model": "gymnast",
+            "spin": 9.0,
+            "pike": 1.4,
+            "side": 0.5,
+            "arms": "T",
+            "finish": "layout",
+            "begin": 0.05,
+            "quarter": 0.2,
+            "hold": 0.0,
+            "extend": 0.2,
+            "duration": 0.5,
+        },
+    ),
+    "flight.inertia_change": lambda: (
+        so.inertia_change,
+        {
+            "model": "gymnast",
+            "axis": 2,
+            "poses": ("layout", "tuck"),
+            "spin": 6.0,
+            "begin": 0.1,
+            "move": 0.25,
+            "duration": 0.6,
+        },
+    ),
+    **{
+        f"flight.{call.__name__}": (lambda call=call: (call, {"flight": flown()}))  # type: ignore[misc]
+        for call in (
+            flight.joint_power,
+            flight.joint_work,
+            flight.landing_target,
+            flight.principal_attitude,
+            flight.principal_axes_along,
+            flight.rigid_continuation,
+            flight.why_broken,
+        )
+    },
+    "flight.landing_error": lambda: (
+        flight.landing_error,
+        {"target": {"tilt": 0.0}, "landed": {"tilt": 0.1}},
+    ),
+    "flight.off_nominal": lambda: (
+        so.off_nominal,
+        {"model": "furrer", "takeoff": TAKEOFF, "somersault": 0.1, "tilt": 0.1, "twist": 0.1},
+    ),
+    "flight.prescribed": lambda: (
+        so.prescribed,
+        {"model": "furrer", "motion": arms(), "duration": 0.1},
+    ),
+    "flight.released": lambda: (so.released, {"swung": swung(), "mount": mount(), "joints": {}}),
+    "flight.swing": lambda: (
+        so.swing,
+        {
+            "model": mount().held,
+            "angles": {"bar": 1.0},
+            "duration": 0.02,
+            "rates": {"bar": 0.1},
+            "gravity": (0.0, 0.0, -9.81),
+            "until": ("bar", 0.5),
+            "stops": {},
+            "samples": 3,
+            "accuracy": 1e-8,
+        },
+    ),
+    "flight.torque_twist": lambda: (
+        so.torque_twist,
+        {"model": "gymnast", "spin": 7.0, "twist_rate": 5.0, "pose": "layout", "duration": 0.5},
+    ),
+    "flight.twist_time": lambda: (
+        flight.twist_time,
+        {"maneuver": so.torque_twist(), "twists": 0.5},
+    ),
+    "flight.with_momentum": lambda: (so.with_momentum, {"model": "furrer", "takeoff": TAKEOFF}),
+    # --- ensembles
+    "ensembles.Vary": lambda: (
+        _vary,
+        {"sets": "takeoff.tilt", "uniform": (0.0, 1.0), "scale": 1.0, "unit": ""},
+    ),
+    **{
+        f"ensembles.Vary.by_{word}": (lambda word=word, value=value: (_vary, {word: value}))  # type: ignore[misc]
+        for word, value in {
+            "values": {"from": 0.0, "to": 1.0, "count": 2},
+            "samples": [0.0, 1.0],
+            "normal": (0.0, 1.0),
+            "truncated_normal": (0.0, 1.0, -1.0, 1.0),
+            "triangular": (0.0, 0.5, 1.0),
+            "lognormal": (1.0, 0.1),
+        }.items()
+    },
+    "ensembles.Vary.quantile": lambda: (NORMAL.quantile, {"u": np.array([0.1, 0.5])}),
+    "ensembles.Ensemble.fraction": lambda: (
+        scattered().fraction,
+        {"tolerance": 0.1, "over": "sample", "confidence": 0.95},
+    ),
+    "ensembles.Ensemble.fraction_ended": lambda: (scattered().fraction, {"ended": "duration"}),
+    "ensembles.Ensemble.fraction_good": lambda: (
+        scattered().fraction,
+        {"good": scattered().dataset["tilt"] > 0},
+    ),
+    "ensembles.Ensemble.open": lambda: (so.Ensemble.open, {"path": "store.nc"}),
+    "ensembles.Ensemble.plot": lambda: (scattered().plot, {"name": "tilt"}),
+    "ensembles.Ensemble.quantiles": lambda: (
+        scattered().quantiles,
+        {"name": "tilt", "q": (0.5,), "over": "sample"},
+    ),
+    "ensembles.Ensemble.sensitivity": lambda: (
+        drawn().sensitivity,
+        {"name": "tilt", "confidence": 0.95, "seed": 0},
+    ),
+    "ensembles.Plan.run": lambda: (planned().run, {"first": 0, "last": 2}),
+    "ensembles.Plan.varied": lambda: (planned().varied, {"first": 0, "last": 2}),
+    "ensembles.carried_out": lambda: (
+        ensembles.carried_out,
+        {
+            "plan": planned(),
+            "out": None,
+            "chunk": 2,
+            "threads": 1,
+            "workers": None,
+            "scheduler": None,
+            "progress": False,
+        },
+    ),
+    "ensembles.ended_by": lambda: (
+        ensembles.ended_by,
+        {"ended": scattered().dataset["ended"], "ending": "duration"},
+    ),
+    "ensembles.ensemble": lambda: (
+        so.ensemble,
+        {
+            "model": "furrer",
+            "takeoff": TAKEOFF,
+            "duration": 0.02,
+            "vary": {"lean": NORMAL},
+            "against": {"tilt": 0.0},
+            "size": 4,
+            "seed": 0,
+            "sequence": "random",
+            "report": ("tilt",),
+            "accuracy": 1e-7,
+            "until": None,
+            "steps": 1000,
+            "out": None,
+            "chunk": None,
+            "threads": 1,
+            "workers": None,
+            "scheduler": None,
+            "progress": False,
+        },
+    ),
+    "ensembles.failed": lambda: (ensembles.failed, {"ended": scattered().dataset["ended"]}),
+    "ensembles.fraction": lambda: (
+        ensembles.fraction,
+        {
+            "good": scattered().dataset["tilt"] > 0,
+            "ended": scattered().dataset["ended"],
+            "over": "sample",
+            "confidence": 0.95,
+        },
+    ),
+    "ensembles.landing_derivatives": lambda: (
+        ensembles.landing_derivatives,
+        {"maneuver": maneuver(), "of": ("tilt",), "to": ("takeoff.tilt",), "step": 1e-4},
+    ),
+    "ensembles.landing_map": lambda: (
+        ensembles.landing_map,
+        {"maneuver": maneuver(), "against": flown(), "span": 0.1, "points": 3},
+    ),
+    "ensembles.parse_ensemble": lambda: (
+        ensembles.parse_ensemble,
+        {"given": SPEC, "beside": Path()},
+    ),
+    "ensembles.plan": lambda: (
+        ensembles.plan,
+        {
+            "simulation": flight.flights("furrer", TAKEOFF, 0.1),
+            "vary": {"lean": NORMAL},
+            "size": 4,
+            "seed": 0,
+            "sequence": "random",
+        },
+    ),
+    "ensembles.quantiles": lambda: (
+        ensembles.quantiles,
+        {"data": scattered().dataset, "name": "tilt", "q": (0.5,), "over": "sample"},
+    ),
+    "ensembles.quick_sensitivity": lambda: (
+        ensembles.quick_sensitivity,
+        {"data": drawn().dataset, "names": ["tilt"]},
+    ),
+    "ensembles.read_ensemble": lambda: (ensembles.read_ensemble, {"path": Path("main.toml")}),
+    "ensembles.sensitivity": lambda: (
+        ensembles.sensitivity,
+        {"data": drawn().dataset, "name": "tilt", "confidence": 0.95, "seed": 0},
+    ),
+    "ensembles.summary": lambda: (
+        ensembles.summary,
+        {"data": scattered().dataset, "tolerance": 0.1},
+    ),
+    "ensembles.within": lambda: (ensembles.within, {"data": scattered().dataset, "tolerance": 0.1}),
+    # --- histories
+    "history.Recording": lambda: (
+        so.Recording,
+        {
+            "model": furrer(),
+            "times": [0.0, 0.1],
+            "base_position": np.zeros((2, 3)),
+            "base_quaternion": [FOUR, FOUR],
+            "joint_coordinates": np.zeros((2, 2)),
+            "angles": np.zeros((2, 3)),
+        },
+    ),
+    "history.read_recording": lambda: (
+        so.read_recording,
+        {"path": "recorded.nc", "model": furrer()},
+    ),
+    "history.summary": lambda: (so.history.summary, {"history": flown()}),
+    # --- dynamics
+    "dynamics.Equations": lambda: (
+        so.Equations,
+        {"model": "furrer", "parameters": ("bodies.body.mass",)},
+    ),
+    "dynamics.Equations.derivative": lambda: (
+        equations().derivative,
+        {"name": "mass_matrix", "argument": "q"},
+    ),
+    "dynamics.Equations.evaluate": lambda: (
+        equations().evaluate,
+        {"expression": equations().expression("mass_matrix"), "q": [0.1, 0.2]},
+    ),
+    "dynamics.Equations.expression": lambda: (equations().expression, {"name": "mass_matrix"}),
+    "dynamics.Equations.kernel": lambda: (
+        equations().kernel,
+        {"expression": equations().expression("mass_matrix")},
+    ),
+    "dynamics.Equations.forward_dynamics": lambda: (
+        equations().forward_dynamics,
+        {
+            "q": [0.1, 0.2],
+            "v": np.zeros(8),
+            "torques": [0.0, 0.0],
+            "gravity": THREE,
+            "parameters": None,
+        },
+    ),
+    "dynamics.Equations.inverse_dynamics": lambda: (
+        equations().inverse_dynamics,
+        {"q": [0.1, 0.2], "v": np.zeros(8), "a": np.zeros(8), "gravity": THREE, "parameters": None},
+    ),
+    "dynamics.Equations.momentum": lambda: (
+        equations().momentum,
+        {"q": [0.1, 0.2], "v": np.zeros(8), "parameters": None},
+    ),
+    "dynamics.Equations.kinetic_energy": lambda: (
+        equations().kinetic_energy,
+        {"q": [0.1, 0.2], "v": np.zeros(8), "parameters": None},
+    ),
+    **{
+        f"dynamics.Equations.{name}": (
+            lambda name=name: (getattr(equations(), name), {"q": [0.1, 0.2]})
+        )  # type: ignore[misc]
+        for name in ("inertia", "mass_matrix", "outboard_inertia", "spring_energy")
+    },
+    "dynamics.body_kind": lambda: (dy.body_kind, {"name": "bodies.body.mass"}),
+    "dynamics.c_code": lambda: (dy.c_code, {"model": so.load("book")}),
+    "dynamics.latex": lambda: (dy.latex, {"model": so.load("book")}),
+    "dynamics.parameter_values": lambda: (dy.parameter_values, {"model": furrer()}),
+    # --- files of tables
+    "spec.read_toml": lambda: (spec.read_toml, {"path": Path("main.toml")}),
+    "spec.plain": lambda: (spec.plain, {"value": TAKEOFF}),
+    "spec.plain_fields": lambda: (spec.plain_fields, {"value": TAKEOFF}),
+    "spec.write_toml": lambda: (spec.write_toml, {"path": Path("x.toml"), "tables": {"a": 1.0}}),
+    # --- pictures
+    "view.Look": lambda: (
+        view.Look,
+        {
+            "size": (64, 64),
+            "camera": (35.0, 12.0),
+            "follow": True,
+            "vectors": (),
+            "charts": False,
+            "ghosts": (),
+            "labels": None,
+            "ground": True,
+        },
+    ),
+    "view.camera": lambda: (view.camera, {"azimuth": 35.0, "elevation": 12.0, "axes": (2, 1, 3)}),
+    "view.check_film": lambda: (view.check_film, {"path": "film.gif"}),
+    "view.check_page": lambda: (view.check_page, {"path": "page.html"}),
+    "view.contact_sheet": lambda: (
+        view.contact_sheet,
+        {"history": flown(), "times": [0.0, 0.05], "columns": 2, "view": (35.0, 12.0), "title": ""},
+    ),
+    "view.film": lambda: (view.film, {"histories": flown(), "path": "film.gif", **_FILM}),
+    "view.frame": lambda: (view.frame, {"histories": flown(), "time": 0.05, **LOOK}),
+    "view.page": lambda: (
+        view.page,
+        {"histories": flown(), "path": "page.html", "labels": None, "title": "a flight"},
+    ),
+    "view.picture": lambda: (
+        view.picture,
+        {"histories": flown(), "path": "picture.png", "times": [0.0, 0.05], "columns": 2, **LOOK},
+    ),
+    "view.stroboscopic_picture": lambda: (
+        view.stroboscopic_picture,
+        {"histories": flown(), "path": "picture.png", "times": 3, **LOOK},
+    ),
+    "view.root_loci": lambda: (view.root_loci, {"loci": locus()}),
+    "view.stability_chart": lambda: (view.stability_chart, {"chart": charted()}),
+    "view.time_histories": lambda: (view.time_histories, {"history": flown(), "title": ""}),
+    # --- the thesis
+    "thesis.reproduce": lambda: (
+        thesis.reproduce,
+        {"ids": ["table4-1"], "out": Path("report"), "progress": False},
+    ),
+}
