@@ -48,7 +48,17 @@ def test_a_mistaken_value_is_shown_whatever_it_is() -> None:
 
 @pytest.mark.parametrize(
     "value",
-    [1j, np.array([1j]), ["a"], np.array(["1"]), [np.datetime64("2024")], [[1], [2, 3]], 10**400],
+    [
+        None,
+        [1.0, None],
+        1j,
+        np.array([1j]),
+        ["a"],
+        np.array(["1"]),
+        [np.datetime64("2024")],
+        [[1], [2, 3]],
+        10**400,
+    ],
 )
 def test_what_is_no_number_is_not_made_one(value: object) -> None:
     assert as_floats(value) is None

@@ -31,7 +31,11 @@ def as_floats(value: Any) -> Array | None:
     """An array of floats, None for what holds anything but real numbers."""
     try:
         array = np.asarray(value)
-        return None if array.dtype.kind in "cmMSUV" else array.astype(float, copy=False)
+        if array.dtype.kind in "cmMSUV" or (
+            array.dtype.kind == "O" and any(one is None for one in array.flat)  # nan to NumPy
+        ):
+            return None
+        return array.astype(float, copy=False)
     except Exception:  # whatever a user's own class does when it is asked for numbers
         return None
 
