@@ -928,7 +928,6 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
         so.read_recording,
         {"path": "recorded.nc", "model": furrer()},
     ),
-    "history.summary": lambda: (so.history.summary, {"history": flown()}),
     # --- dynamics
     "dynamics.Equations": lambda: (
         so.Equations,

@@ -178,7 +178,7 @@ def low_pass(samples: Array, rate: float, cutoff: float) -> Array:
     from scipy.signal import butter, sosfiltfilt
 
     samples = floats("samples", samples)
-    if not samples.ndim or not np.all(np.isfinite(samples)):
+    if not samples.ndim or not len(samples) or not np.all(np.isfinite(samples)):
         raise SomersaultError("samples must be finite numbers along a first dimension of time")
     rate, cutoff = number("rate", rate), number("cutoff", cutoff)
     if not rate * _SLOWEST_CUTOFF <= cutoff < rate / 2:
