@@ -120,7 +120,7 @@ def axis_index(inertias: Array, axis: Axis | str | int) -> int:
 def body_axis(axis: Axis | str | int) -> int | None:
     """Index 0, 1, 2 of the body axis meant, None for what is no number of one."""
     known = isinstance(axis, str | int | np.integer) and not isinstance(axis, bool)
-    return _BODY_AXES.get(axis) if known else None  # type: ignore[call-overload]
+    return _BODY_AXES.get(axis) if known else None
 
 
 def axes_of_spin(model: Model, inertia: Array) -> PrincipalAxes:
