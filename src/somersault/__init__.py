@@ -10,8 +10,19 @@ The public names are listed once, in `__init__.pyi`; each is imported when it is
 starting costs little.
 """
 
-import lazy_loader
+from typing import Any
 
 __version__ = "0.2.0"
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+
+def __getattr__(name: str) -> Any:
+    """The list is read when the first name is wanted: the program heeds interrupts before."""
+    import lazy_loader
+
+    attached = lazy_loader.attach_stub(__name__, __file__)
+    globals().update(zip(("__getattr__", "__dir__", "__all__"), attached, strict=True))
+    return globals()[name] if name == "__all__" else attached[0](name)
+
+
+def __dir__() -> list[str]:
+    return list(__getattr__("__all__"))

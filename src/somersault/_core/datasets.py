@@ -3,27 +3,25 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from somersault._core.errors import SomersaultError
-from somersault._core.files import write
+from somersault._core.files import temporary_folder, write
+from somersault._core.places import check_file
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-def save_history(data: xr.Dataset, path: Path) -> None:
+def save_history(data: xr.Dataset, path: str | os.PathLike[str]) -> None:
     """Write a dataset over `time` as NetCDF or CSV by the file's ending, whole or not at all."""
-    check_history_file(path)
-    write(path, csv(data) if path.suffix.lower() == ".csv" else netcdf(data))
+    file = check_history_file(path)
+    write(file, csv(data) if file.suffix.lower() == ".csv" else netcdf(data))
 
 
-def check_history_file(path: Path) -> None:
-    """SomersaultError unless flights can be written to a file of that name."""
-    if path.suffix.lower() not in (".csv", ".nc"):
-        raise SomersaultError(f"{path.name}: flights are written as .nc (NetCDF) or .csv")
+def check_history_file(path: Any) -> Path:
+    """The path of a file that flights can be written to; SomersaultError for any other."""
+    return check_file(path, (".nc", ".csv"))
 
 
 def csv(data: xr.Dataset) -> str:
@@ -44,7 +42,7 @@ def csv(data: xr.Dataset) -> str:
 
 def netcdf(data: xr.Dataset) -> bytes:
     """A dataset as the bytes of a NetCDF file."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = os.path.join(folder, "data.nc")
+    with temporary_folder() as folder:
+        file = folder / "data.nc"
         data.to_netcdf(file, engine="h5netcdf")
-        return Path(file).read_bytes()
+        return file.read_bytes()

@@ -4,34 +4,48 @@ from __future__ import annotations
 
 import errno
 import os
+import secrets
 import stat
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+
+from somersault._core.interrupts import removed_after, unbroken
 
 
 def write(path: Path, content: str | bytes) -> None:
     """Write a file under a temporary name beside it, then rename it: never half a file."""
-    data = content.encode() if isinstance(content, str) else content
+    data = content.encode(errors="replace") if isinstance(content, str) else content
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(data)
-            os.chmod(name, 0o666 & ~umask())
-            os.replace(name, path)
-        except BaseException:
-            os.unlink(name)
-            raise
+        with unbroken():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with temporary_name(path.parent) as name:
+                handle = os.open(name, os.O_WRONLY | os.O_CREAT | os.O_EXCL | _BINARY, 0o666)
+                with os.fdopen(handle, "wb") as file:
+                    file.write(data)
+                os.replace(name, path)
     except OSError as trouble:  # of the file that was asked for, not of its temporary name
         raise OSError(trouble.errno, trouble.strerror, str(path)) from None
 
 
-def umask() -> int:
-    """The permissions that this process withholds from new files."""
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+_BINARY = getattr(os, "O_BINARY", 0)
+
+
+@contextmanager
+def temporary_name(folder: Path) -> Iterator[Path]:
+    """A name in a folder for what is not finished; what is there afterwards is removed."""
+    name = folder / f".somersault-{secrets.token_hex(8)}"
+    with removed_after(name):
+        yield name
+
+
+@contextmanager
+def temporary_folder(parent: Path | None = None) -> Iterator[Path]:
+    """An empty folder, by default where the system has such; removed with all that is in it."""
+    with temporary_name(Path(tempfile.gettempdir()) if parent is None else parent) as name:
+        name.mkdir(mode=0o700)
+        yield name
 
 
 def read_bytes(path: Path, most: int) -> bytes:
@@ -39,7 +53,7 @@ def read_bytes(path: Path, most: int) -> bytes:
 
     Nobody waits for a pipe that no one writes to.
     """
-    handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | _BINARY)
     with os.fdopen(handle, "rb") as file:
         if not stat.S_ISREG(os.fstat(handle).st_mode):
             raise OSError(errno.EINVAL, "Not a file but a folder, a pipe or a device", str(path))

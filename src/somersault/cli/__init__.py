@@ -7,6 +7,7 @@ standard error and exit code 2.
 from __future__ import annotations
 
 import argparse
+import codecs
 import re
 import sys
 import warnings
@@ -78,15 +79,18 @@ def _parser() -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code."""
+    codecs.register_error(_NAMES, _bytes_of_name)
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):  # a Windows console would not know Ω
-            stream.reconfigure(encoding="utf-8")
+            stream.reconfigure(encoding="utf-8", errors=_NAMES)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("default", SomersaultWarning)
             warnings.showwarning = _note
             chosen = _parser().parse_args(arguments)
             chosen.run(chosen)
+            if sys.stdout is not None:
+                sys.stdout.flush()  # what cannot be written is found out here
     except SomersaultError as mistake:
         print(f"somersault: {mistake}", file=sys.stderr)
         return 2
@@ -101,6 +105,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("somersault: stopped", file=sys.stderr)
         return 130
     return 0
+
+
+_NAMES = "somersault.names"
+
+
+def _bytes_of_name(error: UnicodeError) -> tuple[str | bytes, int]:
+    """A file's name that is no text comes out as the bytes that it is."""
+    try:
+        return codecs.lookup_error("surrogateescape")(error)
+    except UnicodeError:
+        return codecs.lookup_error("backslashreplace")(error)
 
 
 def _note(

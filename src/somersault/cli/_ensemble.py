@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from somersault.cli._pictures import PICTURES, check_picture, save_picture
+from somersault.cli._outputs import PICTURE_ENDINGS, PICTURES, Writing, save_picture
 
 NAME = "ensemble"
 HELP = "Many flights that differ in what a TOML file varies; goes on where it was stopped."
@@ -53,35 +53,44 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--chunk", type=int, metavar="N", help="flights in a chunk")
     parser.add_argument(
-        "--plot", type=Path, metavar="FILE", help=f"draw what is reported first: {PICTURES}"
+        "--plot", type=Path, metavar="FILE", help=f"draw what is reported first: {PICTURE_ENDINGS}"
     )
     parser.add_argument("--json", action="store_true", help="print JSON for programs")
 
 
 def run(chosen: argparse.Namespace) -> None:
     """Fly what is left to fly, and print what it all adds up to."""
-    from somersault.ensembles import carried_out, read_ensemble, summary
+    from somersault._core.places import check_file
+    from somersault.ensembles import carried_out, check_out, read_ensemble, summary
 
     if chosen.plot is not None:
-        check_picture("--plot", chosen.plot)
+        check_file(chosen.plot, PICTURES)
+    whole = chosen.out is not None and check_out(chosen.out)  # written in one piece, at the end
     spec = read_ensemble(chosen.spec)
     flown = carried_out(
-        spec.plan, chosen.out, chosen.chunk, chosen.threads, chosen.workers, chosen.scheduler,
-        progress=sys.stderr.isatty(),
+        spec.plan, None if whole else chosen.out, chosen.chunk, chosen.threads, chosen.workers,
+        chosen.scheduler, progress=sys.stderr.isatty(),
     )  # fmt: skip
+    writing = Writing()
     record = {"model": spec.plan.simulation.name, "dimensions": spec.plan.dims}
     record |= summary(flown.dataset, spec.tolerance)
     drawn = [n for n, v in spec.plan.vary.items() if v.distribution is not None]
-    if chosen.plot is not None:
-        save_picture(chosen.plot, flown.plot())
-        record["picture"] = str(chosen.plot)
-    if chosen.out is not None:
+    if whole:
+        with writing:
+            flown.save(chosen.out)
+            record["dataset"] = str(chosen.out)
+    elif chosen.out is not None:
         record["dataset"] = str(chosen.out)
+    if chosen.plot is not None:
+        with writing:
+            save_picture(chosen.plot, flown.plot())
+            record["picture"] = str(chosen.plot)
     points = spec.plan.count // spec.plan.dims.get("sample", 1)
     few = points * len(spec.quantities) <= _MOST_RANKINGS
     if len(drawn) > 1 and 64 <= spec.plan.size <= _MOST_RANKED and few:
         record |= _ranking(flown.dataset, spec.quantities)
     print(json.dumps(record) if chosen.json else "\n".join(_page(record)))
+    writing.finish()
 
 
 _MOST_RANKED = 100_000  # samples

@@ -8,6 +8,8 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from somersault.cli._outputs import Writing
+
 if TYPE_CHECKING:
     from somersault.flight import Flight
 
@@ -71,16 +73,21 @@ def run(chosen: argparse.Namespace) -> None:
         raise SomersaultError(
             f"the flight broke off at {flight.landing.time:g} s: {why_broken(flight)}"
         )
+    writing = Writing()
     if chosen.out is not None:
-        flight.save(chosen.out)
+        with writing:
+            flight.save(chosen.out)
     if chosen.video is not None:
-        flight.film(chosen.video, charts=True, vectors=("momentum",))
+        with writing:
+            flight.film(chosen.video, charts=True, vectors=("momentum",))
     if chosen.page is not None:
-        flight.page(chosen.page)
+        with writing:
+            flight.page(chosen.page)
     if chosen.json:
         print(json.dumps(_record(flight)))
     else:
         print("\n".join(_page(flight)))
+    writing.finish()
 
 
 def _record(flight: Flight) -> dict[str, Any]:

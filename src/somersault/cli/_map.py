@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from somersault.cli._assignments import assignments
-from somersault.cli._pictures import PICTURES, check_picture, save_picture
+from somersault.cli._outputs import PICTURE_ENDINGS, PICTURES, Writing, save_picture
 
 if TYPE_CHECKING:
     from somersault._core.array import Array
@@ -37,7 +37,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="joint angles in rad (m for slides); the rest stand as the file draws them",
     )
     parser.add_argument(
-        "--out", type=Path, metavar="FILE", help=f"write the map, in 3-D and unrolled: {PICTURES}"
+        "--out",
+        type=Path,
+        metavar="FILE",
+        help=f"write the map, in 3-D and unrolled: {PICTURE_ENDINGS}",
     )
     parser.add_argument(
         "--energies",
@@ -52,13 +55,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> None:
     """Print the energies and kinds of motion; draw the map if there is a file for it."""
     from somersault._core.errors import SomersaultError
+    from somersault._core.places import check_file
     from somersault.model import load
     from somersault.stability import spin
 
     if not 1 <= chosen.energies <= _MOST:
         raise SomersaultError(f"--energies is {chosen.energies}; give 1 to {_MOST} curves a side")
     if chosen.out is not None:
-        check_picture("--out", chosen.out)
+        check_file(chosen.out, PICTURES)
     model = load(chosen.model)
     if model.plane is not None:
         raise SomersaultError(
@@ -69,10 +73,13 @@ def run(chosen: argparse.Namespace) -> None:
     inertias = steady.principal_inertias
     pose = dict(zip(model.coordinates, steady.pose.tolist(), strict=True))
     record = _record(model.name, pose, inertias, steady.inertia_ratios)
+    writing = Writing()
     if chosen.out is not None:
-        _draw(chosen.out, inertias, chosen.energies, _title(model.name, pose))
-        record["picture"] = str(chosen.out)
+        with writing:
+            _draw(chosen.out, inertias, chosen.energies, _title(model.name, pose))
+            record["picture"] = str(chosen.out)
     print(json.dumps(record) if chosen.json else "\n".join(_page(record)))
+    writing.finish()
 
 
 def _record(

@@ -3,7 +3,7 @@
 from somersault.engine._integrator import MOST_STEPS, STATUS, Integrator, Pieces, Solution
 from somersault.engine._kernel import Kernel
 from somersault.engine._machine import compiled, compiled_function, processor
-from somersault.engine._threads import cores, pool, threads, use_threads
+from somersault.engine._threads import Stop, cores, pool, threads, use_threads
 from somersault.engine._vectors import LANES
 
 __all__ = [
@@ -14,6 +14,7 @@ __all__ = [
     "Kernel",
     "Pieces",
     "Solution",
+    "Stop",
     "compiled",
     "compiled_function",
     "cores",

@@ -23,7 +23,7 @@ from somersault.engine._step import (
     renew,
     step,
 )
-from somersault.engine._threads import pool, threads
+from somersault.engine._threads import heeded_stop, threads, together
 from somersault.engine._vectors import LANES, module
 
 STATUS = {
@@ -197,6 +197,7 @@ class Integrator:
             pieces=ends.shape[1], tolerance=tolerance, most_steps=most_steps,
             first_step=first_step,
         )  # fmt: skip
+        job.arrays = first, still, table, ends, samples, out, last, following
         for name, array in (
             ("still", still), ("table", table), ("ends", ends), ("samples", samples),
         ):  # fmt: skip
@@ -211,8 +212,7 @@ class Integrator:
 
     def _run(self, job: _lanes.Job, count: int) -> None:
         """Fly a job on as many threads as there is work for."""
-        helpers = min(threads(), -(-count // LANES))
-        if helpers <= 1:
-            self._fly(ctypes.byref(job))
-        else:
-            list(pool().map(self._fly, [ctypes.byref(job)] * helpers))
+        stop = heeded_stop()
+        job.stop = stop.address
+        helpers = max(1, min(threads(), -(-count // LANES)))
+        together(self._fly, [(ctypes.byref(job),)] * helpers, stop)

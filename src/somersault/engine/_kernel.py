@@ -16,7 +16,7 @@ from somersault._core.array import Array
 from somersault.engine._expression import expression
 from somersault.engine._machine import compiled, compiled_function
 from somersault.engine._samples import Samples, compute
-from somersault.engine._threads import pool, threads
+from somersault.engine._threads import threads, together
 from somersault.engine._vectors import LANES, module
 
 _WORTH_A_THREAD = 256  # blocks below which a second thread costs more than it gives
@@ -130,7 +130,7 @@ class Kernel:
         if workers == 1:
             run(job, 0, blocks)
         else:
-            list(pool().map(run, [job] * workers, edges[:-1], edges[1:]))
+            together(run, [(job, *ends) for ends in pairwise(edges)])
 
 
 def _rows(array: Array, lead: tuple[int, ...], count: int) -> tuple[Array, int]:

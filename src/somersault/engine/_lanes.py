@@ -35,7 +35,8 @@ class Job(ctypes.Structure):
     those that stay are `still` [i still_by …]. `out` (count, sample_count, outputs) receives what
     there is at each of `samples` [i samples_by …], or was at the end of a flight that ended before;
     `last` (count, outputs + 3) what there is at the end, when that was, the status and the steps.
-    `next` holds the flight that is next, and is all that threads share.
+    `next` holds the flight that is next; where `stop` is no longer 0 all flights are given up. That
+    is all that threads share.
     """
 
     _fields_ = (
@@ -51,6 +52,7 @@ class Job(ctypes.Structure):
         ("out", ctypes.c_void_p),
         ("last", ctypes.c_void_p),
         ("next", ctypes.c_void_p),
+        ("stop", ctypes.c_void_p),
         ("count", ctypes.c_int64),
         ("sample_count", ctypes.c_int64),
         ("pieces", ctypes.c_int64),
@@ -235,6 +237,7 @@ def fly(rows: Rows, changing: int) -> str:
     flow, (job,) = code.written("fly", [POINTER])
     blocks = _memory(flow, rows, job)
     x, z, c = (blocks[name] for name in (one.BLOCK, one.TRIAL, one.CONTROL))
+    stop = flow.field(Job, job, "stop")
     integers = flow.room(INTEGER, 3 * LANES)
     active, stopped, fresh = (flow.room(kind) for kind in (INTEGER, LANE_BITS, LANE_BITS))
     flow.store(integer(LANES), active)
@@ -257,6 +260,8 @@ def fly(rows: Rows, changing: int) -> str:
         with flow.repeated() as stopping:
             bits = flow.call(step, blocks.values())
             flow.store(bits, stopped)
+            given_up = flow.load_atomic(stop, "monotonic", align=8, typ=INTEGER)
+            flow.leave_if(flow.icmp_unsigned("!=", given_up, integer(0)), over)
             flow.leave_if(flow.icmp_unsigned("!=", bits, LANE_BITS(0)), stopping)
     flow.ret_void()
     return str(code)

@@ -1,15 +1,64 @@
-"""How many threads compiled code uses, and the threads."""
+"""How many threads compiled code uses, the threads, and how it is stopped."""
 
 from __future__ import annotations
 
+import ctypes
 import os
-from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
+from typing import Any
 
 _chosen: ContextVar[int | None] = ContextVar("threads", default=None)
+
+
+class Stop:
+    """Tells compiled code in other threads to give up what it does.
+
+    Attributes
+    ----------
+    address : int
+        Of an integer of eight bytes, which is 0 until it is to stop.
+    """
+
+    def __init__(self) -> None:
+        self._flag = ctypes.c_int64(0)
+        self.address = ctypes.addressof(self._flag)
+
+    @property
+    def is_set(self) -> bool:
+        """Whether it is to stop."""
+        return self._flag.value != 0
+
+    def set(self) -> None:
+        """From now on nothing that heeds this goes on."""
+        self._flag.value = 1
+
+    @contextmanager
+    def heeded(self) -> Iterator[None]:
+        """What this thread computes within the block heeds it.
+
+        Yields
+        ------
+        None
+        """
+        before = _stop.set(self)
+        try:
+            yield
+        finally:
+            _stop.reset(before)
+
+
+_stop: ContextVar[Stop | None] = ContextVar("stop", default=None)
+
+
+def heeded_stop() -> Stop:
+    """What tells compiled code of this thread to give up."""
+    stop = _stop.get()
+    return Stop() if stop is None else stop
 
 
 def threads() -> int:
@@ -72,6 +121,42 @@ def pool() -> ThreadPoolExecutor:
         With as many threads as `threads` says.
     """
     return _pool(threads())
+
+
+def together(run: Callable[..., Any], rows: Sequence[tuple], stop: Stop | None = None) -> None:
+    """Calls of compiled code, one for each row of arguments, side by side on threads.
+
+    An interrupt sets `stop`, and is raised when all calls are over: they work in memory of the
+    caller. The main thread runs none itself, for it would not hear of the interrupt.
+    """
+    if len(rows) == 1 and (stop is None or threading.current_thread() is not _MAIN):
+        run(*rows[0])
+    else:
+        calls: list[Future[Any]] = []
+        try:
+            calls.extend(pool().submit(run, *row) for row in rows)
+            wait(calls)
+        except BaseException:
+            if stop is not None:
+                stop.set()
+            _wait_whatever_comes(calls)
+            raise
+        for call in calls:
+            call.result()
+    if stop is not None and stop.is_set:
+        raise CancelledError
+
+
+_MAIN = threading.main_thread()
+
+
+def _wait_whatever_comes(calls: Sequence[Future[Any]]) -> None:
+    while True:
+        try:
+            wait(calls)
+            return
+        except KeyboardInterrupt:
+            continue
 
 
 @cache

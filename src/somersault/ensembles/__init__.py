@@ -6,7 +6,7 @@ from somersault.ensembles._endings import ended_by, failed
 from somersault.ensembles._ensemble import ensemble
 from somersault.ensembles._landings import landing_derivatives, landing_map
 from somersault.ensembles._plan import Plan, plan
-from somersault.ensembles._result import Ensemble
+from somersault.ensembles._result import Ensemble, check_out
 from somersault.ensembles._sensitivity import quick_sensitivity, sensitivity
 from somersault.ensembles._spec import EnsembleSpec, parse_ensemble, read_ensemble
 from somersault.ensembles._summary import fraction, quantiles, summary, within
@@ -19,6 +19,7 @@ __all__ = [
     "Plan",
     "Vary",
     "carried_out",
+    "check_out",
     "ended_by",
     "ensemble",
     "failed",

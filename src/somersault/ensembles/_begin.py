@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import shutil
-import tempfile
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from somersault._core.files import umask
+from somersault._core.files import temporary_name
+from somersault._core.interrupts import unbroken
 from somersault.ensembles._chunks import Chunks
 from somersault.ensembles._labels import attributes, coordinate_attributes, variable_attributes
 from somersault.ensembles._metadata import GROUP, arrays_of, fixed_coordinates, read_metadata, sign
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 def create(path: Path, plan: Plan, chunks: Chunks) -> None:
     """An empty store for a plan, there as a whole or not at all."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    with _empty(path, plan, chunks) as fresh:
+    with unbroken(), _empty(path, plan, chunks) as fresh:
         try:
             os.rename(fresh, path)
         except OSError:
@@ -40,7 +40,7 @@ def write_anew(path: Path, plan: Plan, chunks: Chunks, names: list[str] | None) 
 
     What has been run since stays.
     """
-    with _empty(path, plan, chunks) as fresh:
+    with unbroken(), _empty(path, plan, chunks) as fresh:
         metadata = read_metadata(fresh)
         coordinates = fixed_coordinates(metadata)
         for name in arrays_of(metadata) if names is None else names:
@@ -67,8 +67,7 @@ def _empty(path: Path, plan: Plan, chunks: Chunks) -> Iterator[Path]:
     """An empty store beside a path; what is left of it in the end is removed."""
     import zarr
 
-    fresh = Path(tempfile.mkdtemp(dir=path.parent, prefix=f".{path.name}."))
-    try:
+    with temporary_name(path.parent) as fresh:
         group = zarr.create_group(store=str(fresh))
         group.attrs.put(_store_attributes(plan, chunks))
         _create_variables(group, plan, chunks)
@@ -78,10 +77,7 @@ def _empty(path: Path, plan: Plan, chunks: Chunks) -> Iterator[Path]:
             warnings.simplefilter("ignore")
             zarr.consolidate_metadata(group.store)
         sign(fresh)
-        fresh.chmod(0o777 & ~umask())
         yield fresh
-    finally:
-        shutil.rmtree(fresh, ignore_errors=True)
 
 
 def _create_variables(group: zarr.Group, plan: Plan, chunks: Chunks) -> None:

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-import os
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from somersault._core.checks import instance, text, truth, whole_number
-from somersault._core.errors import SomersaultError
-from somersault.ensembles import _netcdf, _run, _store
+from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault.ensembles import _run, _store
 from somersault.ensembles._begin import create
 from somersault.ensembles._chunks import Chunks, chunked
 from somersault.ensembles._memory import empty_dataset, run_bytes
 from somersault.ensembles._plan import Plan
-from somersault.ensembles._result import Ensemble, store_path
+from somersault.ensembles._result import Ensemble, check_out
 
-_MOST = 10**9  # chunks, threads or workers
+_MOST_CHUNK = 10**9  # flights
+_MOST_THREADS = 1024
+_MOST_WORKERS = 256  # processes, of some hundred megabytes each
 _CHUNK = 131_072  # flights
 _LEAST_CHUNK = 8_192
 _PARTS = 8  # that a small ensemble is cut into
@@ -48,19 +50,26 @@ def carried_out(
         For what does not fit, and for a store of another specification.
     """
     instance("plan", plan, Plan)
-    for what, value in (("chunk", chunk), ("threads", threads), ("workers", workers)):
+    for what, value, most in (
+        ("chunk", chunk, _MOST_CHUNK), ("threads", threads, _MOST_THREADS),
+        ("workers", workers, _MOST_WORKERS),
+    ):  # fmt: skip
         if value is not None:
-            whole_number(what, value, 1, _MOST)
+            whole_number(what, value, 1, most)
     truth("progress", progress)
     if scheduler is not None:
         text("scheduler", scheduler)
-    file = None if out is None else store_path("out", out)
+    whole = out is not None and check_out(out)
     if workers is not None and scheduler is not None:
         raise SomersaultError("workers and scheduler are both given; give one of them")
     chunks = chunked(plan.dims, chunk or chunk_size(plan))
-    if file is None or file.suffix.lower() == ".nc":
-        return _in_memory(plan, chunks, file, threads, workers, scheduler, progress)
-    if os.path.exists(file):
+    if out is None or whole:
+        found = _in_memory(plan, chunks, threads, workers, scheduler, progress)
+        if out is not None:
+            _save(found, out)
+        return found
+    file = Path(out)
+    if file.exists():
         chunks = _store.resume(file, plan)
     else:
         if scheduler is not None:  # before anything is written
@@ -96,9 +105,22 @@ def _run_chunks(
             _run.on_threads(plan, chunks, left, put, advance, threads)
 
 
+def _save(found: Ensemble, out: str | Path) -> None:
+    """Write it as NetCDF; what was run is not thrown away for want of room on a disk."""
+    try:
+        found.save(out)
+    except OSError as trouble:
+        warnings.warn(
+            f"{out} could not be written ({trouble.strerror}): the ensemble is in memory alone; "
+            "`save` it to another place",
+            SomersaultWarning,
+            stacklevel=4,
+        )
+
+
 def _in_memory(
-    plan: Plan, chunks: Chunks, file: Path | None, threads: int | None,
-    workers: int | None, scheduler: str | None, shown: bool,
+    plan: Plan, chunks: Chunks, threads: int | None, workers: int | None,
+    scheduler: str | None, shown: bool,
 ) -> Ensemble:  # fmt: skip
     if plan.count * run_bytes(plan) > _MEMORY_BYTES:
         raise SomersaultError(
@@ -107,8 +129,6 @@ def _in_memory(
     data, put = empty_dataset(plan, chunks)
     every = list(range(len(chunks)))
     _run_chunks(plan, chunks, every, put, None, threads, workers, scheduler, shown)
-    if file is not None:
-        _netcdf.save(data, file)
     return Ensemble(data)
 
 

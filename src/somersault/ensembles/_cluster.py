@@ -10,13 +10,14 @@ from __future__ import annotations
 import asyncio
 import gc
 import logging
+import os
 import signal
 import socket
-import threading
+import sys
 import warnings
 from collections.abc import Iterator, Mapping
 from concurrent.futures import CancelledError
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from functools import lru_cache
 from itertools import islice
 from pathlib import Path
@@ -24,6 +25,8 @@ from typing import TYPE_CHECKING, Any
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.files import temporary_folder
+from somersault._core.interrupts import children_unaware
 from somersault.engine import cores, processor
 from somersault.ensembles import _run, _store
 from somersault.ensembles._chunks import Chunks
@@ -31,7 +34,7 @@ from somersault.ensembles._plan import Plan
 from somersault.ensembles._versions import versions
 
 if TYPE_CHECKING:
-    from distributed import Client
+    from distributed import Client, LocalCluster
 
 _PORT = 8786  # a scheduler's, where none is given
 _PATIENCE = 10.0  # s to find a scheduler
@@ -62,26 +65,44 @@ def on_cluster(
             return
         assert workers is not None
         each = threads or max(1, cores() // workers)
-        with _uninterrupted():  # an interrupt is for the program, which then stops them
-            cluster = LocalCluster(
-                n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None,
-                host="127.0.0.1", silence_logs="CRITICAL",
-            )  # fmt: skip
-        with cluster, Client(cluster) as client:
+        with ExitStack() as open_now:
+            folder = open_now.enter_context(temporary_folder())
+            with children_unaware():  # of interrupts: the program ends them
+                _track_quietly()
+                cluster = LocalCluster(
+                    n_workers=workers, threads_per_worker=1, processes=True, host="127.0.0.1",
+                    dashboard_address=None, silence_logs="CRITICAL", local_directory=str(folder),
+                    preload="somersault.ensembles._worker",
+                )  # fmt: skip
+                open_now.enter_context(cluster)
+                open_now.enter_context(_ended_at_once(cluster))
+            client = open_now.enter_context(Client(cluster))
             _carry(client, plan, chunks, left, put, advance, file, each, "this machine")
 
 
+def _track_quietly() -> None:
+    """Begin the process of multiprocessing that cleans up after a program that was ended; without
+    the warning that it would give, for nothing has leaked."""
+    from multiprocessing import resource_tracker
+
+    sys.warnoptions.append("ignore")  # which it is started with
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        sys.warnoptions.remove("ignore")
+
+
 @contextmanager
-def _uninterrupted() -> Iterator[None]:
-    """Processes begun within ignore interrupts."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+def _ended_at_once(cluster: LocalCluster) -> Iterator[None]:
+    """Where the program goes on after an interrupt, its workers do not finish their chunks."""
     try:
         yield
-    finally:
-        signal.signal(signal.SIGINT, before)
+    except KeyboardInterrupt:
+        for nanny in cluster.workers.values():
+            nanny.auto_restart = False
+            with suppress(ProcessLookupError):
+                os.kill(nanny.pid, signal.SIGTERM)
+        raise
 
 
 @contextmanager

@@ -76,9 +76,9 @@ def ensemble(
         A flight that is not done after so many steps of the integration has failed; by default the
         maneuver's, or 100,000.
     out : str or Path, optional
-        A path that ends in .nc gets the dataset as NetCDF in the end. Any other is a Zarr store,
-        which fills chunk by chunk, and with which the same call goes on. Without it the dataset
-        stays in memory.
+        A path that ends in .nc gets the dataset as NetCDF in the end. One that ends in .zarr, or
+        has no ending, is a Zarr store, which fills chunk by chunk, and with which the same call
+        goes on. Without it the dataset stays in memory.
     chunk : int, optional
         Flights in a chunk of the store.
     threads : int, optional

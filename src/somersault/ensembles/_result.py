@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError
+from somersault._core.places import check_file, check_folder
 from somersault.ensembles import _netcdf, _store
 from somersault.ensembles._metadata import require_whole
 from somersault.simulation import ENDED
@@ -64,6 +65,30 @@ class Ensemble:
             return Ensemble(_netcdf.read(file))
         require_whole(file)
         return Ensemble(_store.opened(file))
+
+    def save(self, path: str | Path) -> None:
+        """Write the dataset as a NetCDF file, whole or not at all.
+
+        Parameters
+        ----------
+        path : str or Path
+            It ends in .nc.
+
+        Raises
+        ------
+        SomersaultError
+            For another ending, and for a place where it cannot be written.
+
+        Examples
+        --------
+        >>> from tempfile import TemporaryDirectory
+        >>> import somersault as so
+        >>> vary = {"leant": so.Vary(adds_to="takeoff.tilt", normal=[0.0, 0.05])}
+        >>> flights = so.ensemble("furrer", so.Takeoff(spin=8.64), 1.0, vary, size=4)
+        >>> with TemporaryDirectory() as folder:
+        ...     flights.save(f"{folder}/leant.nc")
+        """
+        _netcdf.save(self.dataset, check_file(path, (".nc",)))
 
     def fraction(
         self,
@@ -224,6 +249,38 @@ class Ensemble:
         from somersault.ensembles._plot import plot
 
         return plot(self.dataset, name)
+
+
+def check_out(given: str | Path) -> bool:
+    """Whether the dataset is written in one piece, as NetCDF, at the end.
+
+    Parameters
+    ----------
+    given : str or Path
+        The name of a file that ends in .nc, or of a Zarr store: it ends in .zarr, has no ending,
+        or is there already.
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    SomersaultError
+        For any other name, and for a place where it cannot be written.
+    """
+    path = store_path("out", given)
+    whole = path.suffix.lower() == ".nc"
+    if whole:
+        check_file(path, (".nc",))
+    elif path.suffix.lower() not in (".zarr", "") and not path.exists():
+        raise SomersaultError(
+            f"{path} would be a Zarr store, a folder of files; let it end in .zarr, or in .nc for "
+            "a NetCDF file"
+        )
+    elif path.is_dir() or not path.exists():  # a file is refused when it is opened as a store
+        check_folder(path)
+    return whole
 
 
 def store_path(what: str, given: str | Path) -> Path:

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from itertools import islice
 
 from somersault._core.array import Array
-from somersault.engine import cores, use_threads
+from somersault.engine import Stop, cores, use_threads
 from somersault.ensembles._chunks import Chunks
 from somersault.ensembles._plan import Plan
 
@@ -31,13 +31,20 @@ def on_threads(
         first = chunks.runs(left[0])[0]
         plan.run(first, first + 1)
 
+    stop = Stop()
+
     def run(k: int) -> tuple[int, Mapping[str, Array]]:
-        return k, rows_of(plan, chunks, k, most // side_by_side)
+        with stop.heeded():
+            return k, rows_of(plan, chunks, k, most // side_by_side)
 
     with ThreadPoolExecutor(side_by_side) as pool:
-        for k, rows in _as_done(pool, left, 2 * side_by_side, run):
-            put(k, rows)
-            advance(chunks.size(k))
+        try:
+            for k, rows in _as_done(pool, left, 2 * side_by_side, run):
+                put(k, rows)
+                advance(chunks.size(k))
+        except BaseException:
+            stop.set()
+            raise
 
 
 def rows_of(plan: Plan, chunks: Chunks, k: int, threads: int) -> Mapping[str, Array]:

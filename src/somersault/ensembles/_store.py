@@ -18,6 +18,7 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.interrupts import unbroken
 from somersault.engine import processor
 from somersault.ensembles._begin import write_anew
 from somersault.ensembles._chunks import Chunks
@@ -139,7 +140,8 @@ def finished(path: Path, plan: Plan, chunks: Chunks) -> set[int]:
 def write(path: Path, plan: Plan, chunks: Chunks, k: int, rows: Mapping[str, Array]) -> None:
     """The variables of chunk k into the store, its seal last."""
     try:
-        _write(path, plan, chunks, k, rows)
+        with unbroken():
+            _write(path, plan, chunks, k, rows)
     except OSError as trouble:  # of a full disk, which does not say of which file
         raise OSError(trouble.errno, trouble.strerror, str(path)) from None
 

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import file_path
 from somersault._core.datasets import save_history
 from somersault.attitude import matrix_from_quaternion, unwrapped_angles
 from somersault.flight._ballistic import BallisticPath
@@ -371,7 +370,7 @@ class Flight(Filmed):
         ...     so.read_recording(f"{folder}/layout.nc", flight.model)
         Recording of furrer: 51 samples, 0 to 0.5 s
         """
-        save_history(self.dataset, file_path("path", path))
+        save_history(self.dataset, path)
 
 
 def _from(path: Array, given: Array) -> Array:

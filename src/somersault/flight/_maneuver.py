@@ -15,6 +15,7 @@ from somersault._core.array import Array
 from somersault._core.checks import file_path, instance, shown, whole_number
 from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault._core.numbers import number, numbers
+from somersault._core.places import check_file
 from somersault.flight._batch import Batch
 from somersault.flight._broken import BROKEN, why_broken
 from somersault.flight._flight import Flight
@@ -285,9 +286,7 @@ class Maneuver(Variants):
         ...     so.Maneuver.read(f"{folder}/layout.toml").duration
         0.5
         """
-        file = file_path("path", path)
-        if file.suffix.lower() != ".toml" or os.path.isdir(file):
-            raise SomersaultError(f"{str(path)!r} is no place for a maneuver; give a .toml file")
+        file = check_file(path, (".toml",))
         try:
             write_toml(file, tables(self, file))
         except OSError as trouble:

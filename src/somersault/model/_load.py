@@ -111,6 +111,9 @@ def _found(source: str | os.PathLike[str] | Model, base: Base | None) -> Model:
         return rebased(_shipped(name), base)
     path = Path(name)
     model = _read(path, base)
+    if not model.name.isascii():  # a file's name may be no text, and a model's is written to files
+        text = model.name.encode(errors="surrogateescape").decode(errors="replace")
+        model = replace(model, name=text)
     if model.ignored:
         _note(path, f"left out, as they have no part in flight: {', '.join(model.ignored)}")
     outside = [

@@ -9,9 +9,10 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import file_path, instance
+from somersault._core.checks import instance
 from somersault._core.errors import SomersaultError
 from somersault._core.files import write
+from somersault._core.places import check_file
 from somersault.attitude import quaternion_from_matrix
 from somersault.model._bodies import GROUND, Body, Joint
 from somersault.model._model import Model
@@ -47,10 +48,8 @@ def write_mjcf(model: Model, path: str | os.PathLike[str]) -> None:
     >>> so.write_mjcf(so.athlete(1.70, 62.0), "me.xml")  # doctest: +SKIP
     >>> so.load("me.xml")  # doctest: +SKIP
     """
-    file = file_path("path", path)
-    if file.suffix.lower() not in (".xml", ".mjcf"):
-        raise SomersaultError(f"{file.name}: MJCF is written as .xml or .mjcf")
-    write(file, mjcf(model))
+    file = check_file(path, (".xml", ".mjcf"))
+    write(file, mjcf(instance("model", model, Model)))
 
 
 def mjcf(model: Model) -> str:

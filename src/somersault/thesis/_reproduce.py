@@ -7,12 +7,13 @@ import io
 import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
-from somersault._core.checks import file_path, truth
+from somersault._core.checks import truth
 from somersault._core.errors import SomersaultError
-from somersault._core.files import write
+from somersault._core.files import temporary_folder, write
+from somersault._core.interrupts import unbroken
+from somersault._core.places import check_folder
 from somersault.thesis._claims import Claim
 from somersault.thesis._entries import Entry, Result, Table, select
 from somersault.thesis._errata import ERRATA
@@ -62,13 +63,14 @@ def reproduce(
     (16, True)
     """
     chosen = select(ids, entries)
-    out = file_path("out", out)
+    out = check_folder(out)
     truth("progress", progress)
     try:
         out.mkdir(parents=True, exist_ok=True)
-        with TemporaryDirectory(prefix=".making-", dir=out) as folder:
-            claims = _written(chosen, Path(folder), progress)
-            _published(Path(folder), out)
+        with temporary_folder(out) as folder:
+            claims = _written(chosen, folder, progress)
+            with unbroken():
+                _published(folder, out)
     except OSError as error:
         raise SomersaultError(
             f"the report cannot be written to {out}: {error.strerror or error}; choose another "

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import shown, whole_number
+from somersault._core.checks import whole_number
 from somersault._core.errors import SomersaultError
 from somersault._core.files import write
 from somersault._core.numbers import number
+from somersault._core.places import check_file
 from somersault.view._encoders import ENCODERS
 from somersault.view._look import look_of, several
 from somersault.view._scene import Scene
@@ -51,9 +51,8 @@ def film(
     Raises
     ------
     SomersaultError
-        For options that make no sense, a file of another kind, and .mp4 or .webm without PyAV.
-    OSError
-        If the file cannot be written.
+        For options that make no sense, a file of another kind or a place where it cannot be
+        written, and .mp4 or .webm without PyAV.
 
     Examples
     --------
@@ -98,9 +97,8 @@ def check_film(path: str | os.PathLike[str]) -> Path:
     Raises
     ------
     SomersaultError
-        For another ending than .mp4, .webm and .gif, or without the encoder of that kind.
-    OSError
-        If the file cannot be written.
+        For another ending than .mp4, .webm and .gif, without the encoder of that kind, and for a
+        place where no such file can be written.
 
     Examples
     --------
@@ -108,31 +106,8 @@ def check_film(path: str | os.PathLike[str]) -> Path:
     >>> check_film("layout.gif").name
     'layout.gif'
     """
-    file = check_place(path, tuple(ENCODERS))
+    file = check_file(path, tuple(ENCODERS))
     ENCODERS[file.suffix.lower()].check()
-    return file
-
-
-def check_place(path: str | os.PathLike[str], endings: Sequence[str]) -> Path:
-    """A path with one of some endings where a file can be written; tried without leaving one."""
-    try:
-        file = Path(path)
-    except TypeError:
-        raise SomersaultError(f"the file must be a path, and is {shown(path)}") from None
-    if file.suffix.lower() not in endings:
-        raise SomersaultError(
-            f"{file.name or path} has another ending than {', '.join(endings)}; give one of these"
-        )
-    if file.is_dir():
-        raise SomersaultError(f"{file} is a folder; give the name of a file")
-    folder = file.absolute().parent
-    while not folder.exists() and folder != folder.parent:
-        folder = folder.parent
-    try:
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except OSError as trouble:
-        raise OSError(trouble.errno, trouble.strerror, str(file)) from None
     return file
 
 

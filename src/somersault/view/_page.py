@@ -16,8 +16,8 @@ import numpy as np
 from somersault._core.checks import name_list, text
 from somersault._core.errors import SomersaultError
 from somersault._core.files import write
+from somersault._core.places import check_file
 from somersault.view import style as look
-from somersault.view._film import check_place
 from somersault.view._look import several
 from somersault.view._page_flight import flight_record
 from somersault.view._page_model import model_record
@@ -63,9 +63,8 @@ def page(
     Raises
     ------
     SomersaultError
-        For what is no history, for more than twelve, and a file of another kind.
-    OSError
-        If the file cannot be written.
+        For what is no history, for more than twelve, and a file of another kind or a place where
+        it cannot be written.
 
     Examples
     --------
@@ -97,9 +96,7 @@ def check_page(path: str | os.PathLike[str]) -> Path:
     Raises
     ------
     SomersaultError
-        For another ending than .html and .htm.
-    OSError
-        If the file cannot be written.
+        For another ending than .html and .htm, and for a place where no page can be written.
 
     Examples
     --------
@@ -107,7 +104,7 @@ def check_page(path: str | os.PathLike[str]) -> Path:
     >>> check_page("layout.html").name
     'layout.html'
     """
-    return check_place(path, ENDINGS)
+    return check_file(path, ENDINGS)
 
 
 def page_record(histories: Sequence[History], labels: Sequence[str], title: str) -> dict[str, Any]:

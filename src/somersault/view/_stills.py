@@ -14,9 +14,9 @@ from somersault._core.checks import whole_number
 from somersault._core.errors import SomersaultError
 from somersault._core.files import write
 from somersault._core.numbers import number, numbers
+from somersault._core.places import check_file
 from somersault.view._actor import Actor
 from somersault.view._canvas import blank
-from somersault.view._film import check_place
 from somersault.view._lettering import write_on
 from somersault.view._look import look_of, several
 from somersault.view._scene import Scene
@@ -98,7 +98,7 @@ def picture(
     >>> flight = so.fly("furrer", so.Takeoff(spin=8.6, tilt=0.05), 1.0)
     >>> picture(flight, "layout.png", [0.0, 0.2, 0.4], size=(120, 160))
     """
-    file = check_place(path, (".png",))
+    file = check_file(path, (".png",))
     shown = several("histories", histories, 1)
     one = times is not None and not np.shape(times)
     moments = _spread(shown, 12) if times is None else numbers("times", np.atleast_1d(times))
@@ -154,7 +154,7 @@ def stroboscopic_picture(
     >>> flight = so.fly("furrer", takeoff, 0.8, gravity=[0.0, 0.0, -9.81])
     >>> stroboscopic_picture(flight, "parabola.png", size=(320, 180))
     """
-    file = check_place(path, (".png",))
+    file = check_file(path, (".png",))
     shown = several("histories", histories, 1, _MOST_POSES)
     chosen = look_of({"camera": (90.0, 8.0), **look})
     if not np.shape(times):

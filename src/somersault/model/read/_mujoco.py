@@ -3,6 +3,7 @@ mean what they mean there."""
 
 from __future__ import annotations
 
+import os
 import re
 import warnings
 from dataclasses import replace
@@ -47,8 +48,7 @@ def read_mjcf(path: Path, base: Base | None = None) -> Model:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # what MuJoCo will do otherwise one day
-            str(path).encode()  # MuJoCo takes names in UTF-8 alone
-            spec = mujoco.MjSpec.from_file(str(path))
+            spec = mujoco.MjSpec.from_file(os.fsencode(path))  # a name may be no text
             compiled = spec.compile()
     except (ValueError, RuntimeError, OSError, AttributeError, mujoco.FatalError) as error:
         raise SomersaultError(
