@@ -18,7 +18,7 @@ from contextlib import contextmanager, suppress
 _lock = threading.RLock()
 _temporary: set[str] = set()
 _PATIENCE = 0.3  # s for a file to be finished, and again for children to end
-_MOST = 0.8  # s, in which all has to be done
+_MOST = 3.0  # s, after which the program ends even if that is not done: a disk hangs, say
 _TO_STOP = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )
@@ -107,18 +107,24 @@ def _watch(receiving: int, heeded: Sequence[int], last_words: str) -> None:
 
 
 def _end(last_words: str) -> None:
-    voice = os.dup(2)
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # what others have to say to it, nobody wants
+    sys.setswitchinterval(1e-4)  # s: the main thread, which may be busy, gives way sooner
+    if os.isatty(2):
+        last_words = f"\r\x1b[2K\x1b[?25h{last_words}"  # a progress bar goes, the cursor is back
+    with suppress(OSError):
+        os.write(2, last_words.encode())
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # those who are ended have nothing to say
     _lock.acquire(timeout=_PATIENCE)  # for good: nothing is begun any more
     _end_children()
     for name in _temporary.copy():
         _remove(name)
-    if os.isatty(voice):
-        last_words = f"\r\x1b[2K\x1b[?25h{last_words}"  # a progress bar goes, the cursor is back
-    os.write(voice, last_words.encode())
 
 
 def _end_children() -> None:
+    if hasattr(os, "waitid"):
+        try:
+            os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+        except ChildProcessError:  # there are none
+            return
     import psutil
 
     tracking = sys.modules.get("multiprocessing.resource_tracker")

@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from somersault._core.checks import file_path, shown
+from somersault._core.checks import file_path
 from somersault._core.errors import SomersaultError
 from somersault._core.files import temporary_name
 
@@ -30,7 +30,7 @@ def check_file(path: Any, endings: Sequence[str]) -> Path:
     SomersaultError where it cannot be written, or where a file of another kind has that name: what
     is written here replaces its like alone.
     """
-    file = _path(path)
+    file = file_path("the file", path)
     if file.suffix.lower() not in endings:
         raise SomersaultError(
             f"{file} has another ending than {' or '.join(endings)}; give one of these"
@@ -53,16 +53,9 @@ def check_file(path: Any, endings: Sequence[str]) -> Path:
 def check_folder(path: Any) -> Path:
     """The path of a folder to be filled, whether it is there or not; SomersaultError where files
     cannot be written to it."""
-    folder = _path(path)
+    folder = file_path("the folder", path)
     _check_room(folder, inside=True)
     return folder
-
-
-def _path(given: Any) -> Path:
-    path = file_path("the file", given)
-    if not path.name:
-        raise SomersaultError(f"{shown(str(given))} is no name of a file; give one")
-    return path
 
 
 def _check_room(place: Path, inside: bool = False) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import codecs
+import os
 import re
 import sys
 import warnings
@@ -28,7 +29,7 @@ class _Parser(argparse.ArgumentParser):
         if needed:
             in_front = "; write it in front of the options" if " " in self.prog else ""
             message = f"{needed[1]} is missing{in_front}"
-        sys.stderr.write(f"{self.prog}: {message}; see {self.prog} --help\n")
+        _say(f"{self.prog}: {message}; see {self.prog} --help")
         raise SystemExit(2)
 
 
@@ -92,19 +93,33 @@ def main(arguments: Sequence[str] | None = None) -> int:
             if sys.stdout is not None:
                 sys.stdout.flush()  # what cannot be written is found out here
     except SomersaultError as mistake:
-        print(f"somersault: {mistake}", file=sys.stderr)
+        _say(f"somersault: {mistake}")
         return 2
     except BrokenPipeError:
         sys.stderr.close()  # the reader has gone; say nothing more to it
         return 0
     except OSError as trouble:
         where = f" {trouble.filename}" if trouble.filename else ""
-        print(f"somersault: cannot write{where}: {trouble.strerror}", file=sys.stderr)
+        _say(f"somersault: cannot write{where}: {trouble.strerror}")
+        _drop_output()
         return 2
-    except KeyboardInterrupt:
-        print("somersault: stopped", file=sys.stderr)
+    except KeyboardInterrupt:  # where nobody heeds interrupts: main was called in Python
+        _say("somersault: stopped")
         return 130
     return 0
+
+
+def _say(sentence: str) -> None:
+    """One line on standard error; of very long words that somebody gave, the beginning."""
+    print(re.sub(r"(\S{100})\S{100,}", r"\1…", sentence), file=sys.stderr)
+
+
+def _drop_output() -> None:
+    """Where standard output is what cannot be written, do not try again at the end."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 _NAMES = "somersault.names"

@@ -273,12 +273,12 @@ def check_out(given: str | Path) -> bool:
     whole = path.suffix.lower() == ".nc"
     if whole:
         check_file(path, (".nc",))
-    elif path.suffix.lower() not in (".zarr", "") and not path.exists():
+    elif path.suffix.lower() not in (".zarr", "") and not os.path.lexists(path):
         raise SomersaultError(
             f"{path} would be a Zarr store, a folder of files; let it end in .zarr, or in .nc for "
             "a NetCDF file"
         )
-    elif path.is_dir() or not path.exists():  # a file is refused when it is opened as a store
+    elif not os.path.isfile(path):  # which is refused when it is opened as a store
         check_folder(path)
     return whole
 
