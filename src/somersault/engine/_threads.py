@@ -135,7 +135,8 @@ def together(run: Callable[..., Any], rows: Sequence[tuple], stop: Stop | None =
         calls: list[Future[Any]] = []
         try:
             calls.extend(pool().submit(run, *row) for row in rows)
-            wait(calls)
+            while wait(calls, _OFTEN).not_done:
+                pass
         except BaseException:
             if stop is not None:
                 stop.set()
@@ -148,6 +149,7 @@ def together(run: Callable[..., Any], rows: Sequence[tuple], stop: Stop | None =
 
 
 _MAIN = threading.main_thread()
+_OFTEN = 0.1  # s: not every system ends a wait for an interrupt
 
 
 def _wait_whatever_comes(calls: Sequence[Future[Any]]) -> None:

@@ -15,6 +15,8 @@ from somersault.ensembles._plan import Plan
 Put = Callable[[int, Mapping[str, Array]], None]
 Advance = Callable[[int], None]  # so many more flights are done
 
+_OFTEN = 0.1  # s: not every system ends a wait for an interrupt
+
 
 def on_threads(
     plan: Plan, chunks: Chunks, left: list[int], put: Put, advance: Advance, threads: int | None
@@ -62,7 +64,7 @@ def _as_done(
     running = {pool.submit(run, k) for k in islice(ahead, most)}
     try:
         while running:
-            done, running = wait(running, return_when=FIRST_COMPLETED)
+            done, running = wait(running, _OFTEN, FIRST_COMPLETED)
             running |= {pool.submit(run, k) for k in islice(ahead, len(done))}
             while done:
                 yield done.pop().result()
