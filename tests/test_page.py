@@ -158,7 +158,7 @@ def test_what_cannot_be_a_page_is_one_sentence(tmp_path: Path) -> None:
 @pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="root writes everywhere")
 def test_a_folder_that_cannot_be_written_is_noticed(tmp_path: Path) -> None:
     tmp_path.chmod(0o500)
-    with pytest.raises(PermissionError):
+    with pytest.raises(so.SomersaultError, match="cannot be written"):
         check_page(tmp_path / "a.html")
 
 
