@@ -53,8 +53,9 @@ def refused(
 
 
 def tree(folder: Path) -> dict[str, tuple[int, bytes]]:
+    """All that is in a folder; a place that was tried has another time, and nothing else."""
     return {
-        str(f): (f.stat().st_mtime_ns, f.read_bytes() if f.is_file() else b"")
+        str(f): (f.stat().st_mtime_ns, f.read_bytes()) if f.is_file() else (0, b"")
         for f in sorted(folder.rglob("*"))
     }
 
@@ -209,7 +210,7 @@ OPTIONS = [
     (("--threads", "-1"), ("threads",)),
     (("--chunk", "many"), ("--chunk",)),
     (("--workers", "1", "--scheduler", "tcp://127.0.0.1:1"), ("workers", "scheduler")),
-    (("--plot", "map.doc"), ("--plot",)),
+    (("--plot", "map.doc"), ("map.doc", ".png or .svg")),
 ]
 
 

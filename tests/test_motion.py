@@ -399,7 +399,7 @@ def test_files_that_are_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     assert "cannot be read" in refused(lambda: read_motion(folder, "gymnast"))
     assert "path of a file" in refused(lambda: read_motion("a\0.csv", "gymnast"))
     assert "read from .csv" in refused(lambda: read_motion(tmp_path / "m.c3d", "gymnast"))
-    assert "no file" in refused(lambda: read_motion(3, "gymnast"))  # type: ignore[arg-type]
+    assert "path of a file" in refused(lambda: read_motion(3, "gymnast"))  # type: ignore[arg-type]
     (tmp_path / "b.csv").write_bytes(b"\x89PNG\r\n\x1a\n\0\0")
     assert "not text" in refused(lambda: read_motion(tmp_path / "b.csv", "gymnast"))
     unknown = {"wrist": ELBOW}
