@@ -138,7 +138,7 @@ def test_on_a_fixed_base_there_is_no_sphere(tmp_path: Path) -> None:
     page(still, tmp_path / "a.html")
     told = record_of(tmp_path / "a.html")["flights"][0]
     assert told["sphere"] is None
-    assert told["momentumSize"] == 0
+    assert told["vectors"]["momentum"]["longest"] == 0
     assert [panel["unit"] for panel in told["panels"]] == ["°"]
 
 

@@ -2,7 +2,7 @@
 import uPlot from "uplot";
 import { el, fixed } from "./dom.js";
 import { locate, rowAt } from "./moment.js";
-import { colors, lineColors } from "./theme.js";
+import { colors } from "./theme.js";
 
 const WHOLE = window.matchMedia("(min-width: 1000px) and (min-height: 620px)"); // as in page.css
 const LOWEST = 112;
@@ -61,8 +61,7 @@ class Panel {
 
   draw() {
     this.plot?.destroy();
-    const { ink, grid } = colors();
-    const lines = lineColors();
+    const { ink, edge: grid, lines } = colors();
     const { unit, title } = this.panel;
     const axis = { stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid, width: 1, size: 4 }, font: FONT, labelFont: FONT, gap: 3 };
     const options = {

@@ -23,9 +23,10 @@ export class FlightScene {
     const scene = new Scene();
     const sun = new DirectionalLight(0xffffff, 2.1);
     sun.position.copy(LIGHT);
-    this.arrow = new Arrow();
+    this.arrows = { momentum: new Arrow(), spin: new Arrow() };
+    this.vectors = { momentum: true, spin: false };
     scene.add(new AmbientLight(0xffffff, 0.35), new HemisphereLight(0xffffff, 0x8794a8, 1.3), sun);
-    scene.add(this.#figures, this.arrow.object);
+    scene.add(this.#figures, this.arrows.momentum.object, this.arrows.spin.object);
     this.canvas = new Canvas(place, scene, 32);
     this.follow = true;
     this.centre = new Vector3();
@@ -96,24 +97,28 @@ export class FlightScene {
       controls.update();
     }
     this.centre.copy(centre);
-    const momentum = rowAt(flight.momentum, 3, here);
-    const scale = (1.15 * flight.reach) / (flight.momentumSize || 1);
-    this.arrow.place(centre.toArray(), momentum.map((value) => scale * value));
-    this.arrow.object.visible &&= this.vectors !== false;
+    for (const [name, arrow] of Object.entries(this.arrows)) {
+      const { values, longest } = flight.vectors[name];
+      const scale = (1.15 * flight.reach) / (longest || 1);
+      arrow.place(centre.toArray(), rowAt(values, 3, here).map((value) => scale * value));
+      arrow.object.visible &&= this.vectors[name];
+    }
     this.canvas.draw();
   }
 
-  setVectors(shown) {
-    this.vectors = shown;
+  /** Whether an arrow is shown, of "momentum" or "spin". */
+  setVector(name, shown) {
+    this.vectors[name] = shown;
     this.at(this.time);
   }
 
   setTheme() {
-    const { shadow, momentum, grid, path } = colors();
+    const { shadow, momentum, spin, edge, path } = colors();
     this.#shadow.color.set(shadow);
     this.#line.color.set(path);
-    this.arrow.color = momentum;
-    this.#grid.color.set(grid);
+    this.arrows.momentum.color = momentum;
+    this.arrows.spin.color = spin;
+    this.#grid.color.set(edge);
     this.canvas.draw();
   }
 

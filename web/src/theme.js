@@ -1,6 +1,6 @@
 // Colours in light and dark, of the palette that the package's pictures have.
 
-let palette = {};
+let palette; // {light, dark}, which the page's CSS variables have too
 const listeners = [];
 const system = window.matchMedia("(prefers-color-scheme: dark)");
 
@@ -25,20 +25,7 @@ export function toggleTheme() {
 
 system.addEventListener("change", () => listeners.forEach((listener) => listener()));
 
-/** Colours of lines, one after the other. */
-export function lineColors() {
-  const { blue, vermilion, green, purple, orange, sky, yellow, black } = palette;
-  return dark()
-    ? [sky, orange, green, purple, yellow, vermilion, "#f2f4f7"]
-    : [blue, vermilion, green, purple, orange, sky, black];
-}
-
-/** Everything else that is drawn by hand. */
+/** Colours by what they are for, and `lines`: those of lines one after the other. */
 export function colors() {
-  const { blue, vermilion, sky, orange, green } = palette;
-  return dark()
-    ? { back: "#171c24", ink: "#e8ecf2", faint: "#8d98a8", grid: "#2b333f", shadow: "#0d1117", ball: "#243140", minor: orange, major: sky, axis: "#2fc795",
-        momentum: orange, path: "#77859a" }
-    : { back: "#ffffff", ink: "#18212c", faint: "#66727f", grid: "#e3e8ee", shadow: "#d3d9e0", ball: "#dfe9f3", minor: vermilion, major: blue, axis: green,
-        momentum: vermilion, path: "#8c99a8" };
+  return dark() ? palette.dark : palette.light;
 }

@@ -75,11 +75,13 @@ export class Viewer {
     this.chartPlace = el("div", { class: "charts" });
     this.transportPlace = el("div", { class: "transport" });
     this.facts = el("p", { class: "note facts" });
-    const box = (label, change) => el("label", {}, el("input", { type: "checkbox", checked: "", onchange: (event) => change(event.target.checked) }), label);
+    const box = (label, change, on = true) =>
+      el("label", {}, el("input", { type: "checkbox", checked: on && "", onchange: (event) => change(event.target.checked) }), label);
     const tools = el(
       "div", { class: "tools" },
       box("follow", (on) => this.scene?.setFollow(on)),
-      box("angular momentum", (on) => this.scene?.setVectors(on)),
+      box(el("b", { class: "momentum" }, "angular momentum"), (on) => this.scene?.setVector("momentum", on)),
+      box(el("b", { class: "spin" }, "spin"), (on) => this.scene?.setVector("spin", on), false),
       el("button", { type: "button", class: "quiet", onclick: () => this.scene?.frame() }, "reset view"),
     );
     const legend = el(
@@ -111,7 +113,7 @@ export class Viewer {
 function facts(flight, inertias) {
   const order = flight.jointsMove ? "of the moment; the curves go with the joints" : "of the body as it is held";
   const numbers = inertias.map((value) => Number(value.toPrecision(3))).join(", ");
-  const size = flight.momentumSize ? `h = ${Number(flight.momentumSize.toPrecision(3))} kg m\u00b2/s` : "no angular momentum";
+  const size = flight.vectors.momentum.longest ? `h = ${Number(flight.vectors.momentum.longest.toPrecision(3))} kg m\u00b2/s` : "no angular momentum";
   return `Principal axes ${order}. I = ${numbers} kg m\u00b2, ${size}.`;
 }
 

@@ -7,8 +7,9 @@ from typing import Any
 from llvmlite import ir
 
 from somersault.view._lanes import WIDTH, Code, Lanes, begun
+from somersault.view.style import LIGHT, rgb
 
-BACKDROP = (244.0, 246.0, 249.0)
+BACKDROP = tuple(255 * part for part in rgb(LIGHT["back"]))
 _FLOOR = (252.0, 252.5, 253.0)
 _LINE = 46.0  # how much darker a line is
 _THIN = 0.012  # of the spacing of the grid: the width of a line

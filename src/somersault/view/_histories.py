@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
     from somersault.history import History
 
-_COLORS = (look.BLUE, look.VERMILION, look.GREEN, look.PURPLE, look.ORANGE, look.SKY, look.BLACK)
 _MOST_LABELS = 14
 
 
@@ -48,14 +47,14 @@ def time_histories(history: History, title: str = "") -> Figure:
     rows = 3 if joints else 2
     picture = Figure(figsize=(7.2, 1.2 + 1.9 * rows), layout="constrained")
     axes = picture.subplots(rows, sharex=True)
-    axes[0].plot(time, angles[:, 0] / (2 * np.pi), color=_COLORS[0])
+    axes[0].plot(time, angles[:, 0] / (2 * np.pi), color=look.LINES[0])
     axes[0].set_ylabel("somersaults")
-    for column, (name, color) in enumerate(zip(("tilt", "twist"), _COLORS, strict=False), 1):
+    for column, (name, color) in enumerate(zip(("tilt", "twist"), look.LINES, strict=False), 1):
         axes[1].plot(time, angles[:, column], color=color)
         axes[1].annotate(f" {name}", (time[-1], angles[-1, column]), color=color, va="center")
     axes[1].set_ylabel("tilt, twist (rad)")
     for index, name in enumerate(joints):
-        color = _COLORS[index % len(_COLORS)]
+        color = look.LINES[index % len(look.LINES)]
         values = history.joint_coordinates[:, index]
         axes[2].plot(time, values, color=color)
         if len(joints) <= _MOST_LABELS:

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.view._stage import rgb
+from somersault.view.style import LIGHT, rgb
 
 _MOST_LETTERS = 160
-INK, FAINT = "#1f2a36", "#5b6570"
+INK, FAINT = LIGHT["ink"], LIGHT["faint"]
 
 
 def write_on(

@@ -32,9 +32,9 @@ _MOST_NUMBERS = 110_000  # of all flights together: a page is to stay below 1.5 
 _MOST_SAMPLES, _FEWEST_SAMPLES = 1000, 60
 _MOST_TRIANGLES = 12_000  # of all models together
 _PALETTE = {
-    "black": look.BLACK, "orange": look.ORANGE, "sky": look.SKY, "green": look.GREEN,
-    "yellow": look.YELLOW, "blue": look.BLUE, "vermilion": look.VERMILION, "purple": look.PURPLE,
-}  # fmt: skip
+    "light": {**look.LIGHT, "lines": look.LINES},
+    "dark": {**look.DARK, "lines": look.DARK_LINES},
+}
 
 
 def page(
@@ -143,6 +143,7 @@ def _document(title: str, record: dict[str, Any]) -> str:
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
             '<link rel="icon" href="data:,">',
             f"<title>{html.escape(title)}</title>",
+            f"<style>{look.variables()}</style>",
             f"<!--\n{notices}-->",
             '<body><div id="page"></div>',
             f'<script id="data" type="application/json">{data}</script>',

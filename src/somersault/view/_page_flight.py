@@ -37,14 +37,21 @@ def flight_record(history: History, label: str, model: int, most: int) -> dict[s
         "times": block(actor.moments),
         "frames": block(np.concatenate([origins, quaternion_from_matrix(rotations)], -1)),
         "centre": block(actor.centres),
-        "momentum": block(momentum),
-        "momentumSize": float(np.linalg.norm(momentum, axis=1).max()),
+        "vectors": {
+            "momentum": _vector(momentum),
+            "spin": _vector(actor.vectors["spin"]),
+        },
         "reach": reach,
         "floor": floor,
         "sphere": _sphere(history.model, q, rotations[:, 0], momentum) if free else None,
         "jointsMove": bool(np.any(np.ptp(q, axis=0) > _STILL)),
         "panels": _panels(history, keep),
     }
+
+
+def _vector(values: Array) -> dict[str, Any]:
+    """An arrow's components, (T, 3), and its greatest length."""
+    return {"values": block(values), "longest": float(np.linalg.norm(values, axis=1).max())}
 
 
 def _momentum(actor: Actor, keep: Array) -> Array:

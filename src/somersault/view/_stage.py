@@ -17,7 +17,7 @@ from somersault.view._meshes import arrow
 
 GHOST = 0.32  # opacity
 _REACH = 1.04  # of a radius: room about what is seen
-VECTORS = {"momentum": look.VERMILION, "spin": look.GREEN}
+VECTORS = {name: look.LIGHT[name] for name in ("momentum", "spin")}
 
 
 @dataclass(eq=False)
@@ -144,14 +144,8 @@ class Stage:
             turn = np.stack([side, np.cross(axis, side), axis])
             points, normals = self._arrow
             stretched = points * [self.radius, self.radius, 0.95 * size * self.radius]
-            paint = np.tile([*rgb(VECTORS[name]), 1.0], (len(self._arrow_faces), 1))
+            paint = np.tile([*look.rgb(VECTORS[name]), 1.0], (len(self._arrow_faces), 1))
             place = self.actors[0].centres[k]
             surface = Surface(self._arrow_faces, paint)
             made.append((surface, stretched @ turn + place, normals @ turn))
         return made
-
-
-def rgb(color: str) -> tuple[float, float, float]:
-    """Red, green and blue, 0 to 1, of "#rrggbb"."""
-    red, green, blue = (int(color[k : k + 2], 16) / 255 for k in (1, 3, 5))
-    return red, green, blue

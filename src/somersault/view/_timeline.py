@@ -10,14 +10,11 @@ import numpy as np
 from somersault._core.array import Array
 from somersault.history import History
 from somersault.view import style as look
-from somersault.view._stage import rgb
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_COLORS = (look.BLUE, look.VERMILION, look.GREEN, look.PURPLE, look.ORANGE, look.SKY, look.BLACK)
-_BACK, _LINE = "#f4f6f9", "#1f2a36"
 _MOST_LABELS = 6
 _STILL = 5e-3  # rad or m: joints that move less are left out
 _DOTS = 100  # an inch, where the picture is 720 pixels high
@@ -48,7 +45,7 @@ class Timeline:
             figure = Figure(
                 (width / dots, height / dots),
                 dots,
-                facecolor=_BACK,
+                facecolor=look.LIGHT["back"],
                 layout=ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.12),
             )
             axes = _drawn(figure, histories)
@@ -69,7 +66,7 @@ class Timeline:
         share = (moment - first) / (last - first)
         x = self._left + share * (self._right - self._left) - self._thick / 2
         start = int(np.floor(x))
-        color = np.array(rgb(_LINE)) * 255
+        color = np.array(look.rgb(look.LIGHT["ink"])) * 255
         for column in range(start, start + self._thick + 1):
             cover = min(column + 1, x + self._thick) - max(column, x)
             if 0 <= column < picture.shape[1] and cover > 0:
@@ -83,16 +80,18 @@ def _drawn(figure: Figure, histories: Sequence[History]) -> list[Axes]:
     rows: list[tuple[str, list[tuple[str, str]]]] = []
     if first.model.free:
         rows = [
-            ("somersault (turns)", [("somersault", _COLORS[0])]),
-            ("tilt (°)", [("tilt", _COLORS[1])]),
-            ("twist (turns)", [("twist", _COLORS[2])]),
+            ("somersault (turns)", [("somersault", look.LINES[0])]),
+            ("tilt (°)", [("tilt", look.LINES[1])]),
+            ("twist (turns)", [("twist", look.LINES[2])]),
         ]
     joints = _moving(histories)
     slides = [n for n in joints if _kind(first, n) == "slide"]
     turning = [n for n in joints if n not in slides and _kind(first, n) != "ball"]
     for words, names in (("joints (°)", turning), ("slides (m)", slides)):
         if names:
-            rows.append((words, [(n, _COLORS[k % len(_COLORS)]) for k, n in enumerate(names)]))
+            rows.append(
+                (words, [(n, look.LINES[k % len(look.LINES)]) for k, n in enumerate(names)])
+            )
     axes = list(figure.subplots(len(rows) or 1, sharex=True, squeeze=False)[:, 0])
     times = first.times
     for ax, (words, lines) in zip(axes, rows, strict=False):

@@ -1,4 +1,5 @@
-"""One look for every picture: colours that colour-blind readers tell apart, labels on the spot."""
+"""One look for pictures, films, pages and the report: colours that colour-blind readers tell apart,
+in light and dark, and labels on the spot."""
 
 from __future__ import annotations
 
@@ -15,6 +16,23 @@ if TYPE_CHECKING:
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 YELLOW, BLUE, VERMILION, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
 GREY, PALE = "#6b6b6b", "#dfe9f3"
+LINES = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)  # one after the other
+
+# By what they are for; of pages and the report in light and in dark, of films in light.
+LIGHT = {
+    "back": "#f3f5f8", "card": "#ffffff", "ink": "#18212c", "faint": "#5c6773", "edge": "#dde3ea",
+    "accent": BLUE, "on-accent": "#ffffff", "good": "#00694d", "bad": "#a63e00",
+    "minor": VERMILION, "major": BLUE, "axis": GREEN, "momentum": VERMILION, "spin": GREEN,
+    "ball": PALE, "shadow": "#d3d9e0", "path": "#8c99a8",
+}  # fmt: skip
+DARK = {
+    "back": "#0e1218", "card": "#171c24", "ink": "#e8ecf2", "faint": "#9aa5b4", "edge": "#2b333f",
+    "accent": SKY, "on-accent": "#0e1218", "good": "#2fc795", "bad": "#ff9a5c",
+    "minor": ORANGE, "major": SKY, "axis": "#2fc795", "momentum": ORANGE, "spin": "#2fc795",
+    "ball": "#243140", "shadow": "#0d1117", "path": "#77859a",
+}  # fmt: skip
+DARK_LINES = (SKY, ORANGE, GREEN, PURPLE, YELLOW, VERMILION, DARK["ink"])
+
 LIGHT_TO_DARK = ("#b9d3ee", "#5e9bd1", "#1f5fa0", "#0a2342")  # one hue, by darkness
 
 _DOTS = 160  # an inch, of a picture in a file
@@ -34,6 +52,25 @@ _SETTINGS: Any = {
     "svg.fonttype": "path",
     "path.simplify_threshold": 0.3,
 }
+
+
+def rgb(color: str) -> tuple[float, float, float]:
+    """Red, green and blue, 0 to 1, of "#rrggbb"."""
+    red, green, blue = (int(color[k : k + 2], 16) / 255 for k in (1, 3, 5))
+    return red, green, blue
+
+
+def variables() -> str:
+    """CSS that gives every colour as a variable, --ink for one: by what the reader's system likes,
+    or as `data-theme` of the root element says."""
+    light, dark = (
+        "".join(f"--{name}:{color};" for name, color in theme.items()) + f"color-scheme:{scheme}"
+        for scheme, theme in (("light", LIGHT), ("dark", DARK))
+    )
+    return (
+        f':root{{{light}}}:root[data-theme="dark"]{{{dark}}}'
+        f'@media (prefers-color-scheme:dark){{:root:not([data-theme="light"]){{{dark}}}}}'
+    )
 
 
 @contextmanager
