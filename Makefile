@@ -10,7 +10,7 @@ JOBS ?= auto
 
 reproduce: report/claims.json
 
-report/claims.json: $(VENV)/.package $(shell find src -name '*.py' -o -name '*.xml')
+report/claims.json: $(VENV)/.package $(shell find src -type f -not -name '*.pyc')
 	$(BIN)/somersault reproduce --out report
 	touch $@
 
@@ -42,7 +42,7 @@ $(VENV)/.venv:
 	touch $@
 
 $(VENV)/.package: $(VENV)/.venv pyproject.toml constraints.txt
-	$(BIN)/python -m pip install --quiet -c constraints.txt -e .
+	$(BIN)/python -m pip install --quiet -c constraints.txt -e ".[film]"
 	touch $@
 
 $(VENV)/.test: $(VENV)/.package

@@ -3,6 +3,7 @@
 from somersault.thesis._claims import Claim, number, statement
 from somersault.thesis._entries import Entry, Result, Table
 from somersault.thesis._errata import ERRATA, Erratum
+from somersault.thesis._motion import Motion
 from somersault.thesis._page import verdict
 from somersault.thesis._registry import ENTRIES
 from somersault.thesis._reproduce import reproduce
@@ -13,6 +14,7 @@ __all__ = [
     "Claim",
     "Entry",
     "Erratum",
+    "Motion",
     "Result",
     "Table",
     "number",

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from somersault.thesis._claims import Claim
+    from somersault.thesis._motion import Motion
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,8 @@ class Result:
     figure : matplotlib.figure.Figure or None
         The picture.
     table : Table or None
+    motion : Motion or None
+        What moves, to be filmed.
     """
 
     says: str
@@ -53,6 +56,7 @@ class Result:
     claims: tuple[Claim, ...] = ()
     figure: Figure | None = None
     table: Table | None = None
+    motion: Motion | None = None
 
 
 @dataclass(frozen=True)

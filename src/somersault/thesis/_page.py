@@ -4,19 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from html import escape
+from importlib.resources import files
 from typing import Any
+
+from somersault.thesis._motion import Written
+from somersault.view import style as look
 
 Record = Mapping[str, Any]
 _BOOK = "<cite>Passive Dynamics in the Control of Gymnastic Maneuvers</cite>"
+_COLUMNS = ("", "where", "claim", "thesis", "computed", "id")
 
 
 @dataclass(frozen=True)
 class Section:
     """One figure, table or section as a page shows it.
 
-    `picture` and `data` are paths from the page: the picture's without its ending, and that of the
-    table's CSV file. `claims` are records of claims.json.
+    Paths are from the page: `picture` without its ending, `drawn` of the numbers that it shows,
+    `data` of the table's. `claims` are records of claims.json.
     """
 
     id: str
@@ -27,6 +33,8 @@ class Section:
     claims: Sequence[Record]
     table: tuple[Sequence[str], Sequence[Sequence[str]]] | None = None
     data: str | None = None
+    drawn: str | None = None
+    motion: Written | None = None
     beyond: bool = False
 
 
@@ -49,79 +57,47 @@ class ChapterPage:
         return f"{self.id.removeprefix('ch')}  {self.title}"
 
 
-_STYLE = """
-:root { color-scheme: light dark; --ink: #1c1c1c; --paper: #ffffff; --soft: #f3f5f7;
-  --line: #d5dae0; --quiet: #5a6470; --link: #0b5394; --good: #00694d; --bad: #a63e00; }
-@media (prefers-color-scheme: dark) { :root { --ink: #e8e8e8; --paper: #16181b; --soft: #22262b;
-  --line: #3a4149; --quiet: #a3adb8; --link: #7db8ef; --good: #45c9a0; --bad: #ff9a5c; } }
-* { box-sizing: border-box; }
-body { margin: 0; font: 16px/1.5 system-ui, sans-serif; color: var(--ink);
-  background: var(--paper); }
-main, header, nav { max-width: 62rem; margin: 0 auto; padding: 0 1.2rem; }
-header { padding-top: 2rem; }
-h1 { margin: 0 0 .3rem; font-size: 1.7rem; }
-h2 { margin: 2.6rem 0 .6rem; padding-top: .6rem; border-top: 1px solid var(--line);
-  font-size: 1.25rem; }
-a { color: var(--link); }
-nav ul { display: flex; flex-wrap: wrap; gap: .2rem .9rem; padding: 0; list-style: none;
-  font-size: .9rem; }
-.overview td.n, .overview th.n { text-align: right; }
-.counts { display: flex; flex-wrap: wrap; gap: .8rem; margin: 1rem 0; padding: 0;
-  list-style: none; }
-.counts li { padding: .5rem 1rem; border-radius: .5rem; background: var(--soft); }
-.counts b { font-size: 1.4rem; margin-right: .4rem; }
-figure { margin: 1rem 0; }
-figure img { display: block; max-width: 100%; height: auto; padding: .6rem; background: #ffffff;
-  border: 1px solid var(--line); border-radius: .4rem; }
-figcaption, .text { max-width: 48rem; }
-.who { color: var(--quiet); font-weight: 600; }
-.beyond { border-left: .3rem solid var(--bad); padding-left: .8rem; }
-.scroll { overflow-x: auto; }
-table { border-collapse: collapse; margin: .8rem 0; font-size: .88rem; width: 100%; }
-th, td { padding: .3rem .6rem; text-align: left; vertical-align: top;
-  border-bottom: 1px solid var(--line); overflow-wrap: anywhere; }
-th { background: var(--soft); }
-td.id { white-space: nowrap;
-  font-family: ui-monospace, monospace; font-size: .8rem; color: var(--quiet); }
-td.n { font-variant-numeric: tabular-nums; min-width: 5.2rem; }
-th { white-space: nowrap; }
-code { font-size: .9em; }
-.yes { color: var(--good); font-weight: 700; white-space: nowrap; }
-.no { color: var(--bad); font-weight: 700; white-space: nowrap; }
-.note { color: var(--quiet); }
-details summary { cursor: pointer; color: var(--link); }
-@media print { details { display: block; } nav { display: none; } }
-"""
-
-
 def index_page(chapters: Sequence[ChapterPage], errata: Iterable[Sequence[str]]) -> str:
-    """The overview: how many claims agree, chapter by chapter, what differs, and all claims."""
+    """The overview: how many claims agree, chapter by chapter, what moves, what differs, and all
+    claims, to be searched."""
     claims = [claim for chapter in chapters for claim in chapter.claims]
-    differ = [claim for claim in claims if not claim["holds"]]
-    pictures = sum(s.picture is not None for chapter in chapters for s in chapter.sections)
+    differ = sum(not claim["holds"] for claim in claims)
+    sections = [section for chapter in chapters for section in chapter.sections]
+    pictures = sum(section.picture is not None for section in sections)
+    motions = sum(section.motion is not None for section in sections)
+    header = f"""<p class="text">Figures, tables and statements of R. R. Playter, {_BOOK} (1994),
+computed anew from the shipped models. Each claim compares what the thesis says with what the
+computation gives, and whether the two agree is computed. {verdict(len(claims), differ)}</p>
+<ul class="counts">
+<li class="yes"><b>{len(claims) - differ}</b>agree</li>
+<li class="no"><b>{differ}</b>misprints or differences, each explained</li>
+<li><b>{pictures}</b>pictures</li>
+<li><b>{motions}</b>motions</li>
+</ul>"""
+    moving = _gallery(chapters)
+    links = [
+        ("#chapters", "chapters"), *([("#motions", "motions")] if moving else []),
+        ("#differences", "differences"), ("#errata", "errata"), ("#claims", "all claims"),
+    ]  # fmt: skip
+    apart = _tables(chapters, differing=True, notes=True)
     return _page(
         "The passive somersault, reproduced",
-        f"""<p class="text">Figures, tables and statements of R. R. Playter, {_BOOK} (1994),
-computed anew from the shipped models. Each claim compares what the thesis says with what the
-computation gives, and whether the two agree is computed. {verdict(len(claims), len(differ))}</p>
-<ul class="counts">
-<li class="yes"><b>{len(claims) - len(differ)}</b>agree</li>
-<li class="no"><b>{len(differ)}</b>misprints or differences, each explained</li>
-<li><b>{pictures}</b>pictures</li>
-</ul>""",
-        [(f"{c.id}.html", c.name) for c in chapters]
-        + [("#differences", "differences"), ("#errata", "errata"), ("#claims", "all claims")],
+        header,
+        links,
         f"""<h2 id="chapters">Chapters</h2>
 {_overview(chapters)}
+{moving}
 <h2 id="differences">Misprints and differences</h2>
-{_claims(differ, notes=True) if differ else "<p>Every claim agrees.</p>"}
+{_claims(apart) if apart else "<p>Every claim agrees.</p>"}
 <h2 id="errata">Errata of the thesis</h2>
 <p class="text">Errors of the printed text, each shown by an independent calculation. The corrected
 form is the one used here.</p>
 {_table(("where", "printed", "correct", "why"), errata)}
 <h2 id="claims">All claims</h2>
 <p>The same as data: <a href="claims.json">claims.json</a>.</p>
-{_claims(claims, notes=False)}""",
+{_filter(chapters)}
+{_claims(_tables(chapters), "all-claims")}""",
+        _asset("report.js"),
     )
 
 
@@ -170,7 +146,9 @@ def verdict(count: int, differ: int) -> str:
     )
 
 
-def _page(title: str, header: str, links: Iterable[tuple[str, str]], body: str) -> str:
+def _page(
+    title: str, header: str, links: Iterable[tuple[str, str]], body: str, script: str = ""
+) -> str:
     """A whole page; `links` are (target, words)."""
     items = "".join(f'<li><a href="{escape(to)}">{escape(words)}</a></li>' for to, words in links)
     return f"""<!DOCTYPE html>
@@ -178,8 +156,10 @@ def _page(title: str, header: str, links: Iterable[tuple[str, str]], body: str) 
 <head>
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
+<link rel="icon" href="data:,">
 <title>{escape(title)}</title>
-<style>{_STYLE}</style>
+<style>{look.variables()}
+{_asset("report.css")}</style>
 </head>
 <body>
 <header>
@@ -190,9 +170,18 @@ def _page(title: str, header: str, links: Iterable[tuple[str, str]], body: str) 
 <main>
 {body}
 </main>
+{f"<script>{script}</script>" if script else ""}
 </body>
 </html>
 """
+
+
+@cache
+def _asset(name: str) -> str:
+    return (files("somersault.thesis") / "site" / name).read_text(encoding="utf-8")
+
+
+# ---------------------------------------------------------------------------- the overview
 
 
 def _overview(chapters: Sequence[ChapterPage]) -> str:
@@ -217,6 +206,52 @@ def _overview(chapters: Sequence[ChapterPage]) -> str:
     )
 
 
+def _gallery(chapters: Sequence[ChapterPage]) -> str:
+    """Stills of everything that moves, each a link to where it is shown."""
+    items = [
+        f'<li><a href="{escape(chapter.id)}.html#{escape(section.id)}">'
+        f'<img src="{escape(section.motion.still)}" alt="" loading="lazy">'
+        f"<span>{escape(section.title)}</span></a></li>"
+        for chapter in chapters
+        for section in chapter.sections
+        if section.motion is not None
+    ]
+    if not items:
+        return ""
+    return f'<h2 id="motions">Motions</h2>\n<ul class="gallery">{"".join(items)}</ul>'
+
+
+def _filter(chapters: Sequence[ChapterPage]) -> str:
+    """What the script reads; hidden where there is none."""
+    choices = "".join(f'<option value="{escape(c.id)}">{escape(c.name)}</option>' for c in chapters)
+    return (
+        '<form id="filter" hidden><input type="search" name="words" placeholder="search: spring, '
+        'fig4-9, §6.3 …" aria-label="words"><select name="chapter" aria-label="chapter">'
+        f'<option value="">all chapters</option>{choices}</select>'
+        '<select name="holds" aria-label="whether they agree"><option value="">all</option>'
+        '<option value="yes">agree</option><option value="no">differ</option></select>'
+        '<button type="reset">clear</button><output name="count"></output></form>'
+    )
+
+
+def _tables(chapters: Sequence[ChapterPage], differing: bool = False, notes: bool = False) -> str:
+    """Claims chapter by chapter; their IDs are links to where they are explained."""
+    parts = []
+    for chapter in chapters:
+        rows = "".join(
+            _claim(claim, notes, f"{chapter.id}.html#{claim['id']}")
+            for claim in chapter.claims
+            if not (differing and claim["holds"])
+        )
+        if rows:
+            heading = f'<tr><th colspan="{len(_COLUMNS)}">{escape(chapter.name)}</th></tr>'
+            parts.append(f'<tbody data-chapter="{escape(chapter.id)}">{heading}{rows}</tbody>')
+    return "".join(parts)
+
+
+# ----------------------------------------------------------------------- figures and tables
+
+
 def _section(section: Section) -> str:
     parts = [f'<section><h2 id="{escape(section.id)}">{escape(section.title)}</h2>']
     if section.beyond:
@@ -228,27 +263,56 @@ def _section(section: Section) -> str:
     )
     made_by = f"<code>somersault reproduce {escape(section.id)}</code>"
     if section.picture is None:
-        parts.append(f'<div class="text">{words}<p>{made_by}</p></div>')
+        parts.append(f'<div class="text">{words}<p class="files">{made_by}</p></div>')
     else:
-        name = escape(section.picture)
+        name = section.picture
+        links = _files((f"{name}.png", "PNG"), (f"{name}.svg", "SVG"), (section.drawn, "CSV"))
         parts.append(
-            f'<figure><img src="{name}.svg" alt="{escape(section.title)}" loading="lazy">'
-            f'<figcaption>{words}<p><a href="{name}.png">PNG</a> · <a href="{name}.svg">SVG</a> · '
-            f"{made_by}</p></figcaption></figure>"
+            f'<figure><img src="{escape(name)}.svg" alt="{escape(section.title)}" loading="lazy">'
+            f'<figcaption>{words}<p class="files">{links} · {made_by}</p></figcaption></figure>'
         )
+    if section.motion is not None:
+        parts.append(_motion(section.motion, section.title))
     if section.table is not None:
         parts.append(_table(*section.table))
     if section.data is not None:
-        parts.append(f'<p><a href="{escape(section.data)}">The table as CSV</a></p>')
+        parts.append(f'<p class="files"><a href="{escape(section.data)}">The table as CSV</a></p>')
     if section.claims:
         agree = sum(bool(claim["holds"]) for claim in section.claims)
         count = len(section.claims)
         opened = "" if agree == count and count > 12 else " open"
+        rows = "".join(_claim(claim, True) for claim in section.claims)
         parts.append(
             f"<details{opened}><summary>{_agreement(count, agree)}</summary>"
-            f"{_claims(section.claims, notes=True)}</details>"
+            f"{_claims(f'<tbody>{rows}</tbody>')}</details>"
         )
     return "".join(parts) + "</section>\n"
+
+
+def _motion(motion: Written, title: str) -> str:
+    """The film, or a still where there is none, with its page and its numbers."""
+    still, page = escape(motion.still), escape(motion.page)
+    if motion.film is None:
+        shown = f'<a href="{page}"><img src="{still}" alt="{escape(title)}" loading="lazy"></a>'
+    else:
+        shown = (
+            f'<video src="{escape(motion.film)}" poster="{still}" controls loop muted playsinline '
+            f'preload="none" aria-label="{escape(title)}"></video>'
+        )
+    who = "" if len(motion.names) < 2 else f"From left to right: {', '.join(motion.names)}. "
+    slow = "" if motion.speed == 1 else f" at {motion.speed:g} of the real speed"
+    what = "A still" if motion.film is None else f"The film{slow}"
+    links = _files((motion.film, "MP4"), (motion.still, "still"), (motion.data, "CSV"))
+    return (
+        f"<figure>{shown}<figcaption><p>{escape(who)}{what}; "
+        f'<a href="{page}">the page</a> turns it, scrubs through it and shows its momentum sphere.'
+        f'</p><p class="files">{links}</p></figcaption></figure>'
+    )
+
+
+def _files(*links: tuple[str | None, str]) -> str:
+    """Links to those files that are there."""
+    return " · ".join(f'<a href="{escape(to)}">{words}</a>' for to, words in links if to)
 
 
 def _agreement(count: int, agree: int) -> str:
@@ -270,18 +334,15 @@ def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     )
 
 
-def _claims(claims: Sequence[Record], notes: bool) -> str:
-    head = "".join(
-        f"<th>{name}</th>" for name in ("", "where", "claim", "thesis", "computed", "id")
-    )
-    return (
-        f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>'
-        + "".join(_claim(claim, notes) for claim in claims)
-        + "</tbody></table></div>"
-    )
+def _claims(bodies: str, id: str = "") -> str:
+    """A table of claims, a card for each on a phone."""
+    head = "".join(f"<th>{name}</th>" for name in _COLUMNS)
+    named = f' id="{id}"' if id else ""
+    return f'<table class="claims"{named}><thead><tr>{head}</tr></thead>{bodies}</table>'
 
 
-def _claim(claim: Record, notes: bool) -> str:
+def _claim(claim: Record, notes: bool, link: str = "") -> str:
+    """A row; its ID is a link, or where a link leads."""
     mark = '<td class="yes">✓ agrees</td>' if claim["holds"] else '<td class="no">≠ differs</td>'
     words = escape(str(claim["claim"]))
     if notes and claim["note"]:
@@ -290,10 +351,14 @@ def _claim(claim: Record, notes: bool) -> str:
     within = "" if claim["tolerance"] is None else f" ± {claim['tolerance']:g}"
     thesis = escape(_shown(claim["thesis"]) + within + unit)
     computed = escape(_shown(claim["computed"]) + unit)
+    id = escape(str(claim["id"]))
+    place = "" if link else f' id="{id}"'
+    name = f'<a href="{escape(link)}">{id}</a>' if link else id
+    holds = "yes" if claim["holds"] else "no"
     return (
-        f"<tr>{mark}<td>{escape(str(claim['where']))}</td><td>{words}</td>"
-        f'<td class="n">{thesis}</td><td class="n">{computed}</td>'
-        f'<td class="id">{escape(str(claim["id"]))}</td></tr>'
+        f'<tr{place} data-holds="{holds}">{mark}<td>{escape(str(claim["where"]))}</td>'
+        f'<td>{words}</td><td class="n" data-is="thesis">{thesis}</td>'
+        f'<td class="n" data-is="computed">{computed}</td><td class="id">{name}</td></tr>'
     )
 
 

@@ -15,8 +15,10 @@ from somersault._core.files import temporary_folder, write
 from somersault._core.interrupts import unbroken
 from somersault._core.places import check_folder
 from somersault.thesis._claims import Claim
+from somersault.thesis._drawn import drawn
 from somersault.thesis._entries import Entry, Result, Table, select
 from somersault.thesis._errata import ERRATA
+from somersault.thesis._motion import write_motion
 from somersault.thesis._page import ChapterPage, Section, chapter_page, index_page
 from somersault.thesis._registry import CHAPTERS, ENTRIES
 
@@ -29,8 +31,9 @@ def reproduce(
 ) -> list[Claim]:
     """Regenerate what the thesis shows, and check what it says.
 
-    Writes figures/ID.svg and .png, tables/ID.csv, claims.json, a page for each chapter and
-    index.html, all at the end or none.
+    Writes figures/ID.svg and .png, data/ID.csv with the numbers that they show, tables/ID.csv, of
+    what moves films/ID.mp4 and pages/ID.html, claims.json, a page for each chapter and index.html,
+    all at the end or none. Films need PyAV; without it there are stills.
 
     Parameters
     ----------
@@ -88,12 +91,9 @@ def _written(chosen: Sequence[Entry], folder: Path, progress: bool) -> list[Clai
     for entry in _watched(chosen, progress):
         with look.style():
             result = entry.make()
-            if result.figure is not None:
-                _save(result.figure, folder / "figures" / entry.id)
-        if result.table is not None:
-            write(folder / "tables" / f"{entry.id}.csv", _csv(result.table))
+            section = _section(entry, result, folder)
         claims += result.claims
-        sections.setdefault(entry.chapter, []).append(_section(entry, result))
+        sections.setdefault(entry.chapter, []).append(section)
     records = [claim.record() for claim in claims]
     write(folder / "claims.json", json.dumps(records, indent=1, ensure_ascii=False) + "\n")
     titles = {chapter.id: chapter.title for chapter in CHAPTERS}
@@ -147,8 +147,17 @@ def _csv(table: Table) -> str:
     return text.getvalue()
 
 
-def _section(entry: Entry, result: Result) -> Section:
-    table = result.table
+def _section(entry: Entry, result: Result, folder: Path) -> Section:
+    """Write what belongs to one entry; say where it is."""
+    numbers, table = None, result.table
+    if result.figure is not None:
+        _save(result.figure, folder / "figures" / entry.id)
+        numbers = drawn(result.figure)
+    if numbers is not None:
+        write(folder / "data" / f"{entry.id}.csv", numbers)
+    if table is not None:
+        write(folder / "tables" / f"{entry.id}.csv", _csv(table))
+    motion = result.motion
     return Section(
         entry.id,
         entry.title,
@@ -158,5 +167,7 @@ def _section(entry: Entry, result: Result) -> Section:
         [claim.record() for claim in result.claims],
         None if table is None else (table.header, table.rows),
         None if table is None else f"tables/{entry.id}.csv",
+        None if numbers is None else f"data/{entry.id}.csv",
+        None if motion is None else write_motion(motion, entry.id, entry.title, folder),
         entry.beyond,
     )

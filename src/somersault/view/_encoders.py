@@ -15,6 +15,9 @@ from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 
 
+_THREADS = 2  # whatever the machine has: on it depends which bytes come out
+
+
 class Encoder(ABC):
     """A film that grows by frames (height, width, 4) of bytes.
 
@@ -62,6 +65,7 @@ class _Video(Encoder):
         stream.width, stream.height = size
         stream.pix_fmt = "yuv420p"
         context = stream.codec_context
+        context.thread_count = _THREADS
         context.time_base = Fraction(1, fps)
         context.colorspace = context.color_primaries = context.color_trc = 1  # ITU-R BT.709
         self._stream = stream

@@ -16,6 +16,10 @@ if TYPE_CHECKING:
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 YELLOW, BLUE, VERMILION, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
 GREY, PALE = "#6b6b6b", "#dfe9f3"
+NAMES = {
+    BLACK: "black", ORANGE: "orange", SKY: "sky blue", GREEN: "green", YELLOW: "yellow",
+    BLUE: "blue", VERMILION: "vermilion", PURPLE: "purple", GREY: "grey", PALE: "pale",
+}  # fmt: skip
 LINES = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)  # one after the other
 
 # By what they are for; of pages and the report in light and in dark, of films in light.

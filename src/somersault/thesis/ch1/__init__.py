@@ -1,4 +1,4 @@
-"""Chapter 1, the introduction: three techniques in the air."""
+"""Chapter 1, the introduction: three techniques in the air, and a compliant twisting somersault."""
 
 from functools import partial
 
@@ -9,5 +9,10 @@ _entry = partial(Entry.of, __name__)
 CHAPTER = Chapter(
     "ch1",
     "Introduction",
-    (_entry("fig1-1", "Figure 1-1: three techniques in the air", "_techniques.fig_1_1"),),
+    (
+        _entry("fig1-1", "Figure 1-1: three techniques in the air", "_techniques.fig_1_1"),
+        _entry(
+            "fig1-4", "Figure 1-4: a twisting somersault by torques alone", "_open_loop.fig_1_4"
+        ),
+    ),
 )

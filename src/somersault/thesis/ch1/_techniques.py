@@ -23,6 +23,7 @@ from somersault.flight import (
 )
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result
+from somersault.thesis._motion import Motion
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -104,6 +105,14 @@ def fig_1_1() -> Result:
         "one twist later, which ends it.",
         (*_inertia_claims(), *_cat_claims(), *_tilt_claims()),
         _draw_1_1(),
+        motion=Motion(
+            {
+                "change of inertia": inertia_change(duration=0.65).fly(),
+                "no momentum": cat_turn(torso=half_turn()).fly(),
+                "tilt of the principal axes": arm_tilt(duration=0.97).fly(),
+            },
+            speed=0.4,
+        ),
     )
 
 

@@ -12,6 +12,7 @@ from somersault.flight import Flight, JointTakeoff, Takeoff, fly, principal_axes
 from somersault.model import load
 from somersault.thesis._claims import statement
 from somersault.thesis._entries import Result
+from somersault.thesis._motion import Motion
 from somersault.thesis.ch4._furrer import MODEL
 
 if TYPE_CHECKING:
@@ -104,6 +105,7 @@ def fig_4_13() -> Result:
         "these tilts three times as large.",
         claims,
         _draw_4_13(flown, body, incline),
+        motion=Motion({"left arm raised": flown}, 0.2, {"charts": True, "camera": (0.0, 6.0)}),
     )
 
 

@@ -12,6 +12,7 @@ from somersault import stability as st
 from somersault.flight import Flight, fly
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result
+from somersault.thesis._motion import Motion
 from somersault.thesis.ch4._furrer import MODEL, NOMINAL
 from somersault.thesis.ch4._layout_takeoff import (
     SPIN,
@@ -61,6 +62,9 @@ def fig_4_2() -> Result:
         "every third of a somersault.",
         (*_passive_claims(soft), *_rigid_claims(), *_stiff_claims()),
         _draw_4_2(soft),
+        motion=Motion(
+            {"passive": soft, "rigid: stiff and damped": stiff(), "rigid: locked": locked()}, 0.5
+        ),
     )
 
 

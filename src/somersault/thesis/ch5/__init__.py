@@ -20,6 +20,9 @@ CHAPTER = Chapter(
             "_release_and_flight.sec_5_4",
         ),
         _entry(
+            "fig5-6", "Figure 5-6: the doll, rigid and with springs", "_rigid_and_sprung.fig_5_6"
+        ),
+        _entry(
             "fig5-7",
             "Figure 5-7: somersaults of twenty launches with each spring",
             "_launch_results.fig_5_7",

@@ -13,7 +13,9 @@ from somersault.dynamics import Equations
 from somersault.flight import GRAVITY, BallisticPath, fly
 from somersault.thesis._claims import Claim, number, statement
 from somersault.thesis._entries import Result, Table
+from somersault.thesis._motion import Motion
 from somersault.thesis.ch5 import _launcher as launcher
+from somersault.thesis.ch5._filmed_launch import doll_along
 from somersault.thesis.ch5._launcher import (
     BAR_HEIGHT,
     CEILING,
@@ -66,6 +68,7 @@ def sec_5_4() -> Result:
                 for fit in map(_fit, _REACHES)
             ),
         ),
+        Motion({"swung round the bar, let go at 0 s": doll_along(throw)}, 0.5),
     )  # fmt: skip
 
 

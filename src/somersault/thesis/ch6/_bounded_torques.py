@@ -10,6 +10,7 @@ import numpy as np
 from somersault.model import named_pose
 from somersault.thesis._claims import Claim, number, statement
 from somersault.thesis._entries import Result, Table
+from somersault.thesis._motion import Motion
 from somersault.thesis.ch6 import _rudi as rudi
 
 if TYPE_CHECKING:
@@ -74,6 +75,9 @@ def bounded_torques() -> Result:
                 )
                 for one in front
             ),
+        ),
+        Motion(
+            {"an athlete's torques": rudi.nominal(_KEPT), "the nominal rudi": rudi.nominal()}, 0.3
         ),
     )
 

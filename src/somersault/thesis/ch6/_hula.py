@@ -10,12 +10,14 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault.flight import (
+    Flight,
     hula,
     principal_attitude,
     rigid_continuation,
 )
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result, Table
+from somersault.thesis._motion import Motion
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -100,7 +102,13 @@ def sec_6_3_hula() -> Result:
         _draw_6_3(),
         Table(("hula", "tilt before extending", "least, 1/4 to 3/4", "most", "mean", "spread"),
               tuple(rows)),
+        Motion({"hula, then straight": _shown()}, 0.3, {"charts": True}),
     )  # fmt: skip
+
+
+def _shown() -> Flight:
+    """The hula that is drawn and filmed."""
+    return hula(spin=_RATE, hold=0.16, duration=1.0).fly()
 
 
 def _tilt_claims(hulas: Extensions) -> tuple[Claim, ...]:
@@ -185,7 +193,7 @@ def _draw_6_3() -> Figure:
     picture = look.figure(9.4, 6.0)
     grid = picture.add_gridspec(2, 2, height_ratios=(1, 1.35))
     above, left, right = (picture.add_subplot(g) for g in (grid[0, :], grid[1, 0], grid[1, 1]))
-    shown = hula(spin=_RATE, hold=0.16, duration=1.0).fly()
+    shown = _shown()
     times = np.array([0.0, 0.12, 0.25, 0.41, 0.51, 0.61, 0.71, 0.81, 0.91])
     strip(above, shown, times, view=(20.0, 12.0), words=False)
     size = above.get_ylim()[1] / 1.1

@@ -12,6 +12,7 @@ from somersault.flight import Flight, fly, landing_error, landing_target, off_no
 from somersault.model import named_pose
 from somersault.thesis._claims import number, statement
 from somersault.thesis._entries import Result, Table
+from somersault.thesis._motion import Motion
 from somersault.thesis.ch6 import _rudi as rudi
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ _FREQUENCY = rudi.THEIRS
 _LARGE = 0.3  # an error that is large, and below which the nominal landing is followed
 _TIMES = 4.0  # by which it must be less than with prescribed joints
 _SIGNIFICANT = 0.1  # rad of a joint's deviation
+_SLOW = 0.3  # of the real speed
 _SHOWN = ("left_shoulder_abduction", "right_shoulder_abduction", "left_elbow")
 _GROUPS = ("shoulder", "elbow", "hip", "torso")
 
@@ -90,6 +92,7 @@ def fig_6_1() -> Result:
             ("joint", "peak torque N m"),
             tuple((str(n), f"{t:.0f}") for n, t in zip(names, torques, strict=True)),
         ),
+        Motion({"the rudi": flight}, _SLOW, {"charts": True}),
     )  # fmt: skip
 
 
@@ -114,7 +117,11 @@ def fig_6_4() -> Result:
     return Result(
         "Prescribed joints from tilt and twist of −0.1 rad: solid lines; the nominal dashed. "
         "Joints follow exactly, the landing attitude is far off.",
-        f"e = {e:.2f}: {_off(flight)}.", claims, _draw_worked(flight),
+        f"e = {e:.2f}: {_off(flight)}. The film has the nominal flight as a ghost; figure 6-5 has "
+        "both strategies side by side.", claims, _draw_worked(flight),
+        motion=Motion(
+            {"prescribed": flight}, _SLOW, {"charts": True, "ghosts": rudi.nominal()}
+        ),
     )  # fmt: skip
 
 
@@ -152,6 +159,10 @@ def fig_6_5() -> Result:
         "start does not, though it is far better off than with prescribed joints. Gains from the "
         "outboard inertias in mid-twist.",
         claims, _draw_worked(flight),
+        motion=Motion(
+            {"prescribed": from_the_corner(None), "compliant": flight, "nominal": rudi.nominal()},
+            _SLOW,
+        ),
     )  # fmt: skip
 
 

@@ -20,6 +20,7 @@ from somersault.flight import (
 )
 from somersault.thesis._claims import statement
 from somersault.thesis._entries import Result, Table
+from somersault.thesis._motion import Motion
 from somersault.thesis.ch1._techniques import SHARP, rotation_number, tilted, until
 
 if TYPE_CHECKING:
@@ -153,6 +154,14 @@ def sec_6_2() -> Result:
         claims,
         _draw_6_2(),
         table,
+        Motion(
+            {
+                "torque twist": torque_twist(pose="T", duration=1.6).fly(),
+                "its tilt taken out": until(stopped, 1.6),
+                "torque-free": arm_tilt(duration=1.6).fly(),
+            },
+            0.5,
+        ),
     )
 
 
