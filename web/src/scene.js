@@ -99,7 +99,7 @@ export class FlightScene {
     this.centre.copy(centre);
     for (const [name, arrow] of Object.entries(this.arrows)) {
       const { values, longest } = flight.vectors[name];
-      const scale = (1.15 * flight.reach) / (longest || 1);
+      const scale = longest && (1.15 * flight.reach) / longest;
       arrow.place(centre.toArray(), rowAt(values, 3, here).map((value) => scale * value));
       arrow.object.visible &&= this.vectors[name];
     }

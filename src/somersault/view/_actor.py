@@ -20,6 +20,7 @@ from somersault.history import History
 from somersault.model import Model, body_frames, centre_of_mass, segment_momenta
 from somersault.view._meshes import Figure, figure_of
 
+_SLOWEST = 1e-5  # rad/s: what turns more slowly stands still
 _SPREAD = 60  # moments that tell how much room it needs
 
 
@@ -72,17 +73,30 @@ class Actor:
     @cached_property
     def vectors(self) -> dict[str, Array]:
         """Angular momentum about the centre of mass (kg m²/s) and the angular velocity of the base
-        (rad/s), (T, 3) each: by differences of what the history holds, whoever made it."""
+        (rad/s), (T, 3) each: the momentum is the history's own where it has one, as flights do,
+        which know it exactly; the rest are differences of what the history holds."""
         history, model = self.history, self.history.model
-        omega = turning(history.times, history.base_quaternion)
-        speeds = joint_speeds(history)
-        momenta = segment_momenta(model, history.joint_coordinates, omega, speeds).sum(1)
         turn = matrix_from_quaternion(history.base_quaternion)
+        omega = turning(history.times, history.base_quaternion)
+        momentum = getattr(history, "angular_momentum", None)
+        if momentum is None:
+            speeds = joint_speeds(history)
+            own = segment_momenta(model, history.joint_coordinates, omega, speeds).sum(1)
+            momentum = np.einsum("tij,tj->ti", turn, own)
+        inertial = {"momentum": momentum, "spin": np.einsum("tij,tj->ti", turn, omega)}
         return {
-            name: values_at(history.times, np.einsum("tij,tj->ti", turn, own), self.moments)
-            @ self.stage.T
-            for name, own in (("momentum", momenta), ("spin", omega))
+            name: values_at(history.times, np.asarray(values, float), self.moments) @ self.stage.T
+            for name, values in inertial.items()
         }
+
+    @cached_property
+    def longest(self) -> dict[str, float]:
+        """How long each of the vectors gets; 0 for one that is nothing but rounding."""
+        reach = float(np.linalg.norm(self.corners(0)[0] - self.centres[0], axis=1).max())
+        # An arrow is seen from a turn in some days on.
+        least = {"momentum": _SLOWEST * self.history.model.mass * reach**2, "spin": _SLOWEST}
+        sizes = {n: float(np.linalg.norm(v, axis=1).max()) for n, v in self.vectors.items()}
+        return {name: size if size > least[name] else 0.0 for name, size in sizes.items()}
 
     def corners(self, k: int) -> tuple[Array, Array]:
         """Corners of its triangles at a moment and the normals there, (n, 3) each."""

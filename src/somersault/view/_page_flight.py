@@ -27,7 +27,7 @@ def flight_record(history: History, label: str, model: int, most: int) -> dict[s
     keep = np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
     actor = Actor(history, history.times[keep])
     rotations, origins = actor.frames
-    momentum = _momentum(actor, keep)
+    momentum = actor.vectors["momentum"]
     reach, floor = _room(actor)
     q = history.joint_coordinates[keep]
     free = history.model.free
@@ -38,8 +38,8 @@ def flight_record(history: History, label: str, model: int, most: int) -> dict[s
         "frames": block(np.concatenate([origins, quaternion_from_matrix(rotations)], -1)),
         "centre": block(actor.centres),
         "vectors": {
-            "momentum": _vector(momentum),
-            "spin": _vector(actor.vectors["spin"]),
+            name: {"values": block(values), "longest": actor.longest[name]}
+            for name, values in actor.vectors.items()
         },
         "reach": reach,
         "floor": floor,
@@ -47,20 +47,6 @@ def flight_record(history: History, label: str, model: int, most: int) -> dict[s
         "jointsMove": bool(np.any(np.ptp(q, axis=0) > _STILL)),
         "panels": _panels(history, keep),
     }
-
-
-def _vector(values: Array) -> dict[str, Any]:
-    """An arrow's components, (T, 3), and its greatest length."""
-    return {"values": block(values), "longest": float(np.linalg.norm(values, axis=1).max())}
-
-
-def _momentum(actor: Actor, keep: Array) -> Array:
-    """Angular momentum about the centre of mass, (T, 3), kg m²/s: the history's own where it has
-    one, as flights do, which know it exactly."""
-    known = getattr(actor.history, "angular_momentum", None)
-    if known is None:
-        return actor.vectors["momentum"]
-    return np.asarray(known, float)[keep] @ actor.stage.T
 
 
 def _room(actor: Actor) -> tuple[float, float]:

@@ -107,7 +107,9 @@ class Scene:
             y += step
 
     def _lines(self, index: int, k: int) -> list[str]:
-        time = f"{self._moments[k]:.2f} s{self._note}"
+        times = self._histories[index].times
+        moment = np.clip(self._moments[k], times[0], times[-1])  # it waits for the others
+        time = f"{_tidy(moment)} s{self._note}"
         if not self._histories[index].model.free:
             return [time]
         somersault, _, twist = self._angles[index][k] / (2 * np.pi)
@@ -115,8 +117,11 @@ class Scene:
 
     def _said(self, index: int, name: str) -> str:
         """What an arrow is, and how long."""
-        values = np.linalg.norm(self._stages[index].actors[0].vectors[name], axis=1)
+        actor = self._stages[index].actors[0]
         words, unit = _NAMES[name]
+        if not actor.longest[name]:
+            return f"no {words}"
+        values = np.linalg.norm(actor.vectors[name], axis=1)
         most, least = float(values.max()), float(values.min())
         if most - least < 0.05 * most:
             return f"{words} {np.median(values):.3g} {unit}"

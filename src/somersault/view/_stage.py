@@ -98,13 +98,6 @@ class Stage:
         middle = self._middle if not self._follows else self.actors[0].centres.mean(0)
         return Ground(self._level, spacing / 2, 3.2 * self.radius, (middle[0], middle[1]))
 
-    @cached_property
-    def _longest(self) -> dict[str, float]:
-        values = self.actors[0].vectors
-        return {
-            name: float(np.linalg.norm(values[name], axis=1).max()) or 1.0 for name in self.vectors
-        }
-
     def eye(self, k: int) -> Eye:
         """The eye at a moment."""
         target = self.actors[0].centres[k] if self._follows else self._middle
@@ -134,7 +127,7 @@ class Stage:
     def _arrows(self, k: int) -> list[tuple[Surface, Array, Array]]:
         made = []
         for name in self.vectors:
-            along = self.actors[0].vectors[name][k] / self._longest[name]
+            along = self.actors[0].vectors[name][k] / (self.actors[0].longest[name] or np.inf)
             size = float(np.linalg.norm(along))
             if size < 1e-3:
                 continue

@@ -40,7 +40,7 @@ class Timeline:
         from matplotlib.figure import Figure
         from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-        dots = _DOTS * min(height, 1.6 * width) / 720
+        dots = _DOTS * (min(height, 1.6 * width) / 720) ** 0.6  # letters shrink less than the rest
         with look.style():
             figure = Figure(
                 (width / dots, height / dots),

@@ -80,8 +80,8 @@ def _draw(rigid: Flight, soft: Flight) -> Figure:
     from somersault.view import strip
     from somersault.view import style as look
 
-    picture = look.figure(8.2, 6.2)
-    above, below, chart = picture.subplots(3, 1, height_ratios=(1, 1, 1.3))
+    picture = look.figure(8.2, 5.4)
+    above, below, chart = picture.subplots(3, 1, height_ratios=(1, 1, 1.7))
     times = np.linspace(0, rigid.times[-1], _POSES)
     for ax, flight, name in ((above, rigid, "arms clamped"), (below, soft, "arms on springs")):
         strip(ax, flight, times, words=False)
