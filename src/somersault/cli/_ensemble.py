@@ -15,6 +15,7 @@ HELP = "Many flights that differ in what a TOML file varies; goes on where it wa
 EXAMPLES = """examples:
   somersault ensemble examples/layout_map.toml --out map.zarr
   somersault ensemble examples/layout_map.toml --out map.nc --plot map.png
+  somersault ensemble SPEC.toml --landings landings.png
   somersault ensemble SPEC.toml --out map.zarr --workers 2
   somersault ensemble SPEC.toml --out map.zarr --scheduler tcp://10.0.0.1:8786
 
@@ -55,6 +56,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--plot", type=Path, metavar="FILE", help=f"draw what is reported first: {PICTURE_ENDINGS}"
     )
+    parser.add_argument(
+        "--landings", type=Path, metavar="FILE.png",
+        help="draw the bodies of a hundred flights as they land",
+    )  # fmt: skip
     parser.add_argument("--json", action="store_true", help="print JSON for programs")
 
 
@@ -65,6 +70,8 @@ def run(chosen: argparse.Namespace) -> None:
 
     if chosen.plot is not None:
         check_file(chosen.plot, PICTURES)
+    if chosen.landings is not None:
+        check_file(chosen.landings, (".png",))
     whole = chosen.out is not None and check_out(chosen.out)  # written in one piece, at the end
     spec = read_ensemble(chosen.spec)
     flown = carried_out(
@@ -85,6 +92,10 @@ def run(chosen: argparse.Namespace) -> None:
         with writing:
             save_picture(chosen.plot, flown.plot())
             record["picture"] = str(chosen.plot)
+    if chosen.landings is not None:
+        with writing:
+            flown.landings(chosen.landings, tolerance=spec.tolerance)
+            record["landings"] = str(chosen.landings)
     points = spec.plan.count // spec.plan.dims.get("sample", 1)
     few = points * len(spec.quantities) <= _MOST_RANKINGS
     if len(drawn) > 1 and 64 <= spec.plan.size <= _MOST_RANKED and few:
@@ -140,7 +151,7 @@ def _page(record: dict[str, Any]) -> list[str]:
         lines.append(
             f"  {which} Sobol' indices of {quantity}{some}: {', '.join(known) or 'not determined'}"
         )
-    for key in ("dataset", "picture"):
+    for key in ("dataset", "picture", "landings"):
         if key in record:
             lines.append(f"  {key}: {record[key]}")
     return lines

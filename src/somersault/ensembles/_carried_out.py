@@ -88,7 +88,7 @@ def carried_out(
 
     _run_chunks(plan, chunks, left, put, file, threads, workers, scheduler, progress)
     _store.tidy(file)
-    return Ensemble(_store.opened(file))
+    return Ensemble(_store.opened(file), plan)
 
 
 def _run_chunks(
@@ -129,7 +129,7 @@ def _in_memory(
     data, put = empty_dataset(plan, chunks)
     every = list(range(len(chunks)))
     _run_chunks(plan, chunks, every, put, None, threads, workers, scheduler, shown)
-    return Ensemble(data)
+    return Ensemble(data, plan)
 
 
 def chunk_size(plan: Plan) -> int:

@@ -16,18 +16,23 @@ from somersault.ensembles._metadata import require_whole
 from somersault.simulation import ENDED
 
 if TYPE_CHECKING:
+    import os
+
     import xarray as xr
     from matplotlib.figure import Figure
+
+    from somersault.ensembles._plan import Plan
 
 
 @dataclass(frozen=True, eq=False)
 class Ensemble:
     """Flights that differ in what was varied: `dataset` over the varied quantities.
 
-    Made by `ensemble`, or by `Ensemble.open` from a file.
+    Made by `ensemble`, or by `Ensemble.open` from a file, which holds no `plan`: what was flown.
     """
 
     dataset: xr.Dataset
+    plan: Plan | None = None
 
     @staticmethod
     def open(path: str | Path) -> Ensemble:
@@ -249,6 +254,57 @@ class Ensemble:
         from somersault.ensembles._plot import plot
 
         return plot(self.dataset, name)
+
+    def landings(
+        self,
+        path: str | os.PathLike[str],
+        good: Any = None,
+        tolerance: float | None = None,
+        *,
+        plan: Plan | None = None,
+        most: int = 100,
+        **options: Any,
+    ) -> None:
+        """Write one picture of how flights landed: a body for each, coloured by whether it landed.
+
+        The flights that are drawn are flown once more. A map over two grids is drawn as a map, the
+        second grid from left to right; others go by their landing error, if they have one.
+
+        Parameters
+        ----------
+        path : path-like
+            A .png file.
+        good : xarray.DataArray of bool, optional
+            Of each flight whether it landed, as for `fraction`.
+        tolerance : float, optional
+            Those landed whose landing error is at most so much, rad. Without it and without `good`
+            all that did not fail.
+        plan : Plan, optional
+            What was flown, for an ensemble that was opened from a file, as
+            `ensembles.read_ensemble(SPEC).plan` gives it.
+        most : int
+            Bodies that are drawn, evenly from all, at most 240.
+        **options
+            columns, superimposed, size, camera, ground: see `view.landings_picture`.
+
+        Raises
+        ------
+        SomersaultError
+            Without a plan, or with that of another ensemble, and for what does not fit.
+
+        Examples
+        --------
+        >>> from tempfile import TemporaryDirectory
+        >>> import somersault as so
+        >>> vary = {"leant": so.Vary(adds_to="takeoff.tilt", normal=[0.0, 0.05])}
+        >>> twist = so.arm_tilt()
+        >>> flights = so.ensemble(twist, vary=vary, size=6, against=twist.fly())
+        >>> with TemporaryDirectory() as folder:
+        ...     flights.landings(f"{folder}/landings.png", tolerance=0.1)
+        """
+        from somersault.ensembles._landed import landings
+
+        landings(self.dataset, plan or self.plan, path, good, tolerance, most, **options)
 
 
 def check_out(given: str | Path) -> bool:

@@ -7,7 +7,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault.attitude import Axes, angles_from_quaternion
 from somersault.engine import STATUS
-from somersault.flight._batch import Batch
+from somersault.flight._batch import Batch, Begun
 from somersault.flight._flight import Flight
 from somersault.flight._plane import turning
 from somersault.flight._start import Start
@@ -21,12 +21,15 @@ _MOST_PARTS = 16  # of a gap at once
 _CLOSEST = 1e-6  # cos Θ: a path nearer the singularity than this is taken to go through
 
 
-def flown(batch: Batch, times: Array, gravity: Array, accuracy: float, steps: int) -> Flight:
-    """The one flight of a batch, kept at `times` (s).
+def flown(
+    batch: Batch, times: Array, gravity: Array, accuracy: float, steps: int,
+    begun: Begun | None = None,
+) -> Flight:  # fmt: skip
+    """The one flight of a batch, or the one that `begun` has of it, kept at `times` (s).
 
     It is solved on points that are close enough to count turns on, if need be again on closer ones.
     """
-    begun, duration = batch.begun(), batch.duration
+    begun, duration = begun or batch.begun(), batch.duration
     points = _first_points(batch.system, begun.start, np.union1d(times, [0.0, duration]))
     for _ in range(_MOST_REFINEMENTS):
         solution = begun.solve(points, accuracy, steps + _STEPS_A_POINT * len(points))

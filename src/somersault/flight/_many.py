@@ -14,6 +14,7 @@ from somersault._core.checks import name_list
 from somersault._core.plain import plain
 from somersault.flight._batch import Batch
 from somersault.flight._flight import Flight
+from somersault.flight._flown import flown
 from somersault.flight._maneuver import STEPS, check_limits_of_flight, flight_time
 from somersault.flight._report import ENDINGS, Report, check, target_of, variables
 from somersault.flight._reported import reported, watch_from_takeoff
@@ -188,6 +189,21 @@ class Flights:
         samples = self.times if len(self.times) else np.array([self.batch.duration])
         solution = begun.solve(samples, self.accuracy, self.steps)
         return reported(self.report, self.target, begun, solution, self.times)
+
+    def history(self, values: Numbers) -> Flight:
+        """One of the flights, with its history at takeoff and at its end.
+
+        Parameters
+        ----------
+        values : mapping of tuple to float or ndarray, (1,)
+            The numbers of the flight, which can take off.
+
+        Returns
+        -------
+        Flight
+        """
+        begun, times = self.batch.begun(values), np.array([0.0, self.batch.duration])
+        return flown(self.batch, times, np.zeros(3), self.accuracy, self.steps, begun)
 
 
 def flights(

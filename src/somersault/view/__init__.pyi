@@ -6,6 +6,7 @@ from ._film import check_film as check_film
 from ._film import film as film
 from ._filmed import Filmed as Filmed
 from ._histories import time_histories as time_histories
+from ._landings import landings_picture as landings_picture
 from ._look import Look as Look
 from ._page import check_page as check_page
 from ._page import page as page

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -18,7 +18,9 @@ from somersault.attitude import (
 )
 from somersault.history import History
 from somersault.model import Model, body_frames, centre_of_mass, segment_momenta
+from somersault.view._canvas import Surface
 from somersault.view._meshes import Figure, figure_of
+from somersault.view.style import rgb
 
 _SLOWEST = 1e-5  # rad/s: what turns more slowly stands still
 _SPREAD = 60  # moments that tell how much room it needs
@@ -26,15 +28,22 @@ _SPREAD = 60  # moments that tell how much room it needs
 
 @dataclass(frozen=True, eq=False)
 class Actor:
-    """A history as it is at some moments (T,), in axes front, left and up."""
+    """A history as it is at some moments (T,), in axes front, left and up; all of one colour, if a
+    `tint` is given."""
 
     history: History
     moments: Array
+    tint: str | None = None
 
     @cached_property
     def figure(self) -> Figure:
         """What it looks like."""
-        return figure_of(self.history.model)
+        figure = figure_of(self.history.model)
+        if self.tint is None:
+            return figure
+        paints = figure.surface.paints.copy()
+        paints[:, :3] = rgb(self.tint)
+        return replace(figure, surface=Surface(figure.surface.faces, paints))
 
     @cached_property
     def stage(self) -> Array:

@@ -152,5 +152,5 @@ def lamp_direction(eye: Eye) -> Array:
 def blank(width: int, height: int) -> Array:
     """An empty picture (height, width, 4), of the colour of the backdrop."""
     picture = np.full((height, width, 4), 255, np.uint8)
-    picture[..., :3] = np.array(BACKDROP, np.uint8)
+    picture[..., :3] = np.round(BACKDROP)
     return picture

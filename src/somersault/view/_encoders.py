@@ -14,7 +14,6 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 
-
 _THREADS = 2  # whatever the machine has: on it depends which bytes come out
 
 

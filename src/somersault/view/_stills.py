@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from somersault.history import History
 
 _CELL = (240, 320)
-_MOST_POSES = 240
-_MOST_PIXELS = 60_000_000
+MOST_POSES = 240
+MOST_PIXELS = 60_000_000
 _STILL = 0.25  # of its size: a centre of mass that travels less stays in place
 
 
@@ -102,13 +102,13 @@ def picture(
     shown = several("histories", histories, 1)
     one = times is not None and not np.shape(times)
     moments = _spread(shown, 12) if times is None else numbers("times", np.atleast_1d(times))
-    columns = min(whole_number("columns", columns, 1, _MOST_POSES), max(1, len(moments)))
-    if not 0 < len(moments) <= _MOST_POSES:
-        raise SomersaultError(f"give 1 to {_MOST_POSES} times, not {len(moments)}")
+    columns = min(whole_number("columns", columns, 1, MOST_POSES), max(1, len(moments)))
+    if not 0 < len(moments) <= MOST_POSES:
+        raise SomersaultError(f"give 1 to {MOST_POSES} times, not {len(moments)}")
     chosen = look_of(look) if one else look_of(look, _CELL)
     width, height = chosen.size
     rows = -(-len(moments) // columns)
-    if width * columns * height * rows > _MOST_PIXELS:
+    if width * columns * height * rows > MOST_PIXELS:
         raise SomersaultError(
             f"that is a picture of {width * columns} x {height * rows} pixels; give a smaller "
             "size or fewer times"
@@ -155,14 +155,14 @@ def stroboscopic_picture(
     >>> stroboscopic_picture(flight, "parabola.png", size=(320, 180))
     """
     file = check_file(path, (".png",))
-    shown = several("histories", histories, 1, _MOST_POSES)
+    shown = several("histories", histories, 1, MOST_POSES)
     chosen = look_of({"camera": (90.0, 8.0), **look})
     if not np.shape(times):
-        moments = _spread(shown, whole_number("times", times, 1, _MOST_POSES))
+        moments = _spread(shown, whole_number("times", times, 1, MOST_POSES))
     else:
         moments = numbers("times", times)
-    if not 0 < len(moments) * len(shown) <= _MOST_POSES:
-        raise SomersaultError(f"give 1 to {_MOST_POSES} poses, not {len(moments) * len(shown)}")
+    if not 0 < len(moments) * len(shown) <= MOST_POSES:
+        raise SomersaultError(f"give 1 to {MOST_POSES} poses, not {len(moments) * len(shown)}")
     actors = [Actor(history, moments) for history in shown]
     if len(moments) > 1 and not any(map(_travels, actors)):
         raise SomersaultError(

@@ -1,0 +1,103 @@
+"""Many poses of one model in one picture, coloured by what became of each."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from somersault._core.checks import whole_number
+from somersault._core.errors import SomersaultError
+from somersault._core.files import write
+from somersault._core.places import check_file
+from somersault.view._canvas import blank
+from somersault.view._lettering import FAINT, write_on
+from somersault.view._look import look_of, several
+from somersault.view._stills import MOST_PIXELS, MOST_POSES, png
+from somersault.view.style import rgb
+
+if TYPE_CHECKING:
+    from somersault.history import History
+
+_CELL, _WHOLE = (120, 140), (720, 720)
+_HEAD = 26  # pixels of a line of the key
+
+
+def landings_picture(
+    poses: History,
+    path: str | os.PathLike[str],
+    colors: Sequence[str],
+    words: Sequence[str],
+    key: Sequence[tuple[str, str]],
+    columns: int = 10,
+    superimposed: bool = False,
+    **look: Any,
+) -> None:
+    """Write the poses of a history in one .png file, side by side or in one place.
+
+    Parameters
+    ----------
+    poses : History
+        Each of its samples is a pose of its own.
+    path : path-like
+        A .png file, written whole or not at all.
+    colors, words : sequence of str
+        Of each pose its colour, "#rrggbb", and what stands below it.
+    key : sequence of (str, str)
+        What the colours mean, a line each; a line without a colour says something else.
+    columns : int
+        Poses in a row.
+    superimposed : bool
+        Whether all are drawn in one place. What few have in common is faint: a place that a share
+        of them covers has the square root of that share as its opacity.
+    **look
+        size (of each, or of the whole if superimposed), camera, ground: see `Look`.
+
+    Raises
+    ------
+    SomersaultError
+        For options that make no sense, and for more than 240 poses.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> from somersault.view import landings_picture
+    >>> flight = so.fly("furrer", so.Takeoff(spin=8.6), 0.5, samples=3)
+    >>> key = [("#0072B2", "one flight at three times")]
+    >>> landings_picture(flight, "poses.png", ["#0072B2"] * 3, ["0", "0.25", "0.5 s"], key)
+    """
+    file = check_file(path, (".png",))
+    (poses,) = several("poses", poses, 1, 1)
+    count = len(poses.times)
+    if not 0 < count <= MOST_POSES:
+        raise SomersaultError(f"{count} poses are too many for a picture; give 1 to {MOST_POSES}")
+    columns = min(whole_number("columns", columns, 1, MOST_POSES), count)
+    chosen = look_of({"ground": False, **look}, _WHOLE if superimposed else _CELL)
+    if superimposed and chosen.ground:
+        raise SomersaultError("superimposed poses have no ground; leave it out")
+    width, height = chosen.size
+    across, rows = (1, 1) if superimposed else (columns, -(-count // columns))
+    head = _HEAD * len(key) + 12
+    if width * across * (height * rows + head) > MOST_PIXELS:
+        raise SomersaultError(
+            f"that is a picture of {width * across} x {height * rows + head} pixels; give a "
+            "smaller size or fewer poses"
+        )
+    frames = _frames(poses, colors, (width, height), chosen.camera, chosen.ground)
+    sheet = blank(max(width * across, 420), height * rows + head)
+    if superimposed:
+        sheet[head:, :width] = _exposed(frames, blank(width, height))
+    else:
+        for k, frame in enumerate(frames):
+            top, left = head + k // columns * height, k % columns * width
+            cell = sheet[top : top + height, left : left + width]
+            cell[:] = frame
+            write_on(cell, (6, height - 18), words[k], 10, FAINT)
+    for line, (color, said) in enumerate(key):
+        top = 8 + _HEAD * line
+        if color:
+            sheet[top + 3 : top + 15, 10:22, :3] = np.array(rgb(color)) * 255
+        write_on(sheet, (30 if color else 10, top), said, 14)
+    write(file, png(sheet))
