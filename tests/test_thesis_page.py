@@ -6,7 +6,10 @@ import csv
 
 import pytest
 
-from somersault.thesis import reproduce, verdict
+import somersault as so
+from somersault.thesis import Entry, Motion, Result, reproduce, verdict
+from somersault.thesis._drawn import drawn
+from somersault.thesis._motion import Written
 from somersault.thesis._page import ChapterPage, Section, chapter_page, index_page
 
 HOSTILE = {
@@ -24,11 +27,16 @@ HOSTILE = {
 
 def test_pages_escape_everything():
     table = (("<h>",), [("<c>",)])
-    section = Section("<s>", "<t>", "<says>", "<ours>", "<p>", [HOSTILE], table, "<csv>")
+    motion = Written("<film>", "<still>", "<page>", "<data>", ("<left>", "<right>"), 0.5)
+    section = Section(
+        "<s>", "<t>", "<says>", "<ours>", "<p>", [HOSTILE], table, "<csv>", "<drawn>", motion
+    )
     chapter = ChapterPage("ch9", "<title>", [section])
     index = index_page([chapter], [("<w>", "<p>", "<c>", "<y>")])
     whole = index + chapter_page(chapter)
-    for bad in ("<script", "<b>id", "<where>", "<says>", "<ours>", "<h>", "<c>", "<w>", "<i>",
+    assert whole.count("<script") == 1  # that of the index's filter
+    for bad in ("<script>alert", "<film>", "<still>", "<page>", "<data>", "<left>", "<drawn>",
+                "<b>id", "<where>", "<says>", "<ours>", "<h>", "<c>", "<w>", "<i>",
                 "<s>", "<t>", "<csv>", "<y>"):  # fmt: skip
         assert bad not in whole, bad
     assert whole.count("<title>") == 2
@@ -66,3 +74,87 @@ def test_tables_can_be_downloaded(tmp_path):
     assert rows[0] == ["parameter", "thesis", "model", "unit"]
     assert rows[1][0] == "mb"
     assert len(rows) == 15
+
+
+def test_without_an_encoder_there_is_a_still_and_the_page():
+    motion = Written(None, "films/x.png", "pages/x.html", "data/x-motion.csv", ("a",), 0.5)
+    page = chapter_page(ChapterPage("ch9", "Nine", [Section("x", "X", "s", "o", None, [],
+                                                            motion=motion)]))  # fmt: skip
+    assert "<video" not in page
+    assert '<a href="pages/x.html"><img src="films/x.png"' in page
+
+
+def test_numbers_of_a_picture_are_those_that_are_drawn():
+    from matplotlib.figure import Figure
+
+    figure = Figure()
+    left, right, empty, off = figure.subplots(1, 4)
+    left.set(title="a, b", xlabel="$x$ (s)", ylabel="y")
+    left.plot([0, 1, 2], [3.0, float("nan"), 5.0], color="#0072B2")
+    left.plot([0, 1], [1, 1], label="named")
+    left.axhline(2.0)
+    left.scatter([7], [8], c=[9.0], label="dots")
+    left.fill_between([0, 1], [0, 0], [1, 2], label="band")
+    right.bar([1, 2], [3, 4], label="bars")
+    right.pcolormesh([0, 1, 2], [0, 1], [[5.0, 6.0]])
+    right.contour([0, 1], [0, 1], [[0, 1], [0, 1]], levels=[0.5])
+    empty.text(0, 0, "words")
+    off.plot([1], [1])
+    off.axis("off")
+    text = drawn(figure)
+    rows = list(csv.DictReader(text.splitlines()))
+    assert {row["panel"] for row in rows} == {"a, b", "2"}
+
+    def of(**wanted):
+        return [
+            [row["x"], row["y"], row["value"]]
+            for row in rows
+            if all(row[name] == value for name, value in wanted.items())
+        ]
+
+    assert of(name="blue") == [["0", "3", ""], ["2", "5", ""]]
+    assert of(name="named") == [["0", "1", ""], ["1", "1", ""]]
+    assert of(name="dots") == [["7", "8", "9"]]
+    assert {"x axis": "x (s)", "y axis": "y"}.items() <= rows[0].items()
+    assert ["1", "2", ""] in of(name="band")
+    assert of(name="bars") == [["1", "3", ""], ["2", "4", ""]]
+    assert of(**{"drawn as": "map"}) == [["0.5", "0.5", "5"], ["1.5", "0.5", "6"]]
+    assert {row[0] for row in of(**{"drawn as": "contour"})} == {"0.5"}
+    assert len(of(**{"drawn as": "line"})) == 4
+    assert drawn(Figure()) is None
+
+
+def test_a_motion_has_film_page_and_numbers(tmp_path):
+    flights = {
+        name: so.fly("furrer", so.Takeoff(spin=8.6, tilt=tilt), 0.2, samples=5)
+        for name, tilt in (("a, little", 0.01), ("</script>", 0.1))
+    }
+    book = so.fly("book", so.Takeoff(spin=8.6), 0.2, samples=3)
+
+    def entry(name):
+        motion = Motion({**flights, "book": book}, 0.5, {"size": (192, 108)})
+        return Entry(name, "<b>Title", "ch4", lambda: Result("says", "ours", motion=motion))
+
+    for out in ("one", "two"):
+        reproduce(None, tmp_path / out, progress=False, entries=[entry("x")])
+    files = sorted(
+        str(p.relative_to(tmp_path / "one")) for p in (tmp_path / "one").rglob("*") if p.is_file()
+    )
+    assert files == [
+        "ch4.html", "claims.json", "data/x-motion.csv", "films/x.mp4", "films/x.png", "index.html",
+        "pages/x.html",
+    ]  # fmt: skip
+    for name in files:
+        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
+    av = pytest.importorskip("av")
+    with av.open(str(tmp_path / "one/films/x.mp4")) as film:
+        assert len(list(film.decode(video=0))) == 0.2 / 0.5 * 30 + 1
+    rows = list(csv.DictReader((tmp_path / "one/data/x-motion.csv").read_text().splitlines()))
+    assert len(rows) == 5 + 5 + 3
+    assert [row["motion"] for row in rows[4:6]] == ["a, little", "</script>"]
+    last = flights["a, little"]
+    assert float(rows[4]["somersault [rad]"]) == pytest.approx(last.landing.somersault, rel=1e-6)
+    assert rows[12]["left_shoulder [rad or m]"] == ""  # a book has none
+    page = (tmp_path / "one/ch4.html").read_text()
+    assert "From left to right: a, little, &lt;/script&gt;, book." in page
+    assert 'src="films/x.mp4" poster="films/x.png"' in page

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from somersault._core.files import write
 
 if TYPE_CHECKING:
@@ -82,10 +80,9 @@ def write_motion(motion: Motion, id: str, title: str, folder: Path) -> Written:
 
 def _csv(histories: Mapping[str, History]) -> str:
     """One row a sample, of one history after the other; the header names units."""
-    several = len({h.model.coordinates for h in histories.values()}) > 1
-    joints = sorted({name for h in histories.values() for name in h.model.coordinates})
-    if not several:
-        joints = list(next(iter(histories.values())).model.coordinates)
+    import numpy as np
+
+    joints = list(dict.fromkeys(n for h in histories.values() for n in h.model.coordinates))
     header = [
         "motion", "time [s]", "somersault [rad]", "tilt [rad]", "twist [rad]",
         *(f"base position {axis} [m]" for axis in (1, 2, 3)),
@@ -96,22 +93,16 @@ def _csv(histories: Mapping[str, History]) -> str:
     for name, history in histories.items():
         own = history.model.coordinates
         columns = [
-            history.joint_coordinates[:, [own.index(joint)]] if joint in own else _blank(history)
+            history.joint_coordinates[:, own.index(joint)]
+            if joint in own
+            else np.full(len(history.times), np.nan)
             for joint in joints
         ]
-        table = np.concatenate(
-            [
-                history.times[:, None], history.angles, history.base_position,
-                history.base_quaternion, *columns,
-            ], 1,
-        )  # fmt: skip
+        known = (history.times, history.angles, history.base_position, history.base_quaternion)
+        table = np.column_stack([*known, *columns])
         quoted = f'"{name}"' if "," in name else name
         lines += [f"{quoted}," + ",".join(map(_number, row)) for row in table.tolist()]
     return "\n".join(lines) + "\n"
-
-
-def _blank(history: History) -> Any:
-    return np.full((len(history.times), 1), np.nan)
 
 
 def _number(value: float) -> str:

@@ -15,7 +15,6 @@ from somersault._core.files import temporary_folder, write
 from somersault._core.interrupts import unbroken
 from somersault._core.places import check_folder
 from somersault.thesis._claims import Claim
-from somersault.thesis._drawn import drawn
 from somersault.thesis._entries import Entry, Result, Table, select
 from somersault.thesis._errata import ERRATA
 from somersault.thesis._motion import write_motion
@@ -149,6 +148,8 @@ def _csv(table: Table) -> str:
 
 def _section(entry: Entry, result: Result, folder: Path) -> Section:
     """Write what belongs to one entry; say where it is."""
+    from somersault.thesis._drawn import drawn
+
     numbers, table = None, result.table
     if result.figure is not None:
         _save(result.figure, folder / "figures" / entry.id)
