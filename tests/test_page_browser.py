@@ -3,35 +3,22 @@ what is shown, never how fast."""
 
 from __future__ import annotations
 
-import os
-import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import browsers
 import numpy as np
 import pytest
+from browsers import DESKTOP, NEEDS_CHROMIUM, PHONE
 
 import somersault as so
 from somersault import rigid
 from somersault.view import page
 
-playwright = pytest.importorskip("playwright.sync_api", reason="Playwright is not there")
-
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not there"),
-]
-QUIET = [
-    "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking",
-    "--disable-component-update", "--disable-sync",
-]  # fmt: skip
+pytestmark = [pytest.mark.slow, NEEDS_CHROMIUM]
 EVIL = '<img src=x onerror="window.hurt=1"></script><script>window.hurt=1</script>'
-DESKTOP, PHONE = (1280, 800), (390, 844)
-PICTURES = os.environ.get("SOMERSAULT_PICTURES")  # a folder to keep screenshots in
-
 Open = Callable[..., Any]
 
 
@@ -53,37 +40,24 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    with playwright.sync_playwright() as driver:
-        started = driver.chromium.launch(executable_path=CHROMIUM, args=QUIET)
-        yield started
-        started.close()
+    with browsers.started() as browser:
+        yield browser
 
 
 @pytest.fixture
 def opened(browser: Any, file: Path) -> Iterator[Open]:
     """Opens the page; in the end nothing may have gone wrong in it."""
     said: list[str] = []
-    contexts = []
+    tabs = []
 
     def open_page(size: tuple[int, int] = DESKTOP, scheme: str = "light", **more: Any) -> Any:
-        context = browser.new_context(
-            viewport={"width": size[0], "height": size[1]},
-            color_scheme=scheme,
-            offline=True,
-            **more,
-        )
-        contexts.append(context)
-        tab = context.new_page()
-        tab.on("console", lambda message: message.type == "error" and said.append(message.text))
-        tab.on("pageerror", lambda error: said.append(str(error)))
-        tab.on("request", lambda ask: ask.url.startswith("http") and said.append(ask.url))
-        tab.goto(file.as_uri())
-        settle(tab)
-        return tab
+        tabs.append(browsers.opened(browser, file, said, size, scheme, **more))
+        settle(tabs[-1])
+        return tabs[-1]
 
     yield open_page
-    for context in contexts:
-        context.close()
+    for tab in tabs:
+        tab.context.close()
     assert said == []
 
 
@@ -114,9 +88,7 @@ def picture(tab: Any, place: str = ".scene .canvas", keep: str = "") -> np.ndarr
     from PIL import Image
 
     data = tab.locator(place).screenshot()
-    if PICTURES and keep:
-        Path(PICTURES).mkdir(parents=True, exist_ok=True)
-        tab.screenshot(path=Path(PICTURES) / f"{keep}.png")
+    browsers.keep(tab, keep)
     return np.asarray(Image.open(BytesIO(data)).convert("RGB")).astype(int)
 
 
@@ -297,3 +269,16 @@ def test_without_webgl_the_charts_remain(browser: Any, file: Path) -> None:
     tab.keyboard.press("End")
     assert now(tab) == pytest.approx(0.8)
     context.close()
+
+
+def test_arrows_can_be_shown(opened: Open) -> None:
+    tab = opened()
+    seek(tab, 0.3)
+    momentum = picture(tab)
+    tab.get_by_label("spin").check()
+    settle(tab)
+    both = picture(tab, keep="arrows")
+    assert differing(momentum, both) > 5e-4
+    tab.get_by_label("angular momentum").uncheck()
+    settle(tab)
+    assert differing(both, picture(tab)) > 5e-4

@@ -12,7 +12,8 @@ EXAMPLES = """examples:
   somersault reproduce ch4 --out report
   somersault reproduce fig4-9 table4-3
 
-Writes OUT/index.html, a page for each chapter, OUT/claims.json, OUT/figures and OUT/tables."""
+Writes OUT/index.html, a page for each chapter, OUT/claims.json, figures and tables, the numbers
+that they show, and of what moves a film and a page that plays it."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -71,8 +71,8 @@ computation gives, and whether the two agree is computed. {verdict(len(claims), 
 <ul class="counts">
 <li class="yes"><b>{len(claims) - differ}</b>agree</li>
 <li class="no"><b>{differ}</b>misprints or differences, each explained</li>
-<li><b>{pictures}</b>pictures</li>
-<li><b>{motions}</b>motions</li>
+<li><b>{pictures}</b>{"picture" if pictures == 1 else "pictures"}</li>
+<li><b>{motions}</b>{"motion" if motions == 1 else "motions"}</li>
 </ul>"""
     moving = _gallery(chapters)
     links = [

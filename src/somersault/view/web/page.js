@@ -25,6 +25,7 @@ main {
 .missing { padding: 24px; }
 .scale { position: absolute; top: 8px; right: 10px; margin: 0; }
 .momentum { color: var(--momentum); } .spin { color: var(--spin); }
+.tools input { accent-color: var(--accent); }
 .tools b { font-weight: 600; }
 .minor { color: var(--minor); } .major { color: var(--major); } .separatrix { color: var(--ink); } .trail { color: var(--axis); }
 .note b { font-weight: 600; }
