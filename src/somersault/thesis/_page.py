@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from html import escape
 from importlib.resources import files
-from typing import Any
 
 from somersault.thesis._motion import Written
+from somersault.thesis._page_tables import COLUMNS, Record, claim_row, claims_table, table
 from somersault.view import style as look
 
-Record = Mapping[str, Any]
 _BOOK = "<cite>Passive Dynamics in the Control of Gymnastic Maneuvers</cite>"
-_COLUMNS = ("", "where", "claim", "thesis", "computed", "id")
 
 
 @dataclass(frozen=True)
@@ -88,15 +86,15 @@ computation gives, and whether the two agree is computed. {verdict(len(claims), 
 {_overview(chapters)}
 {moving}
 <h2 id="differences">Misprints and differences</h2>
-{_claims(apart) if apart else "<p>Every claim agrees.</p>"}
+{claims_table(apart) if apart else "<p>Every claim agrees.</p>"}
 <h2 id="errata">Errata of the thesis</h2>
 <p class="text">Errors of the printed text, each shown by an independent calculation. The corrected
 form is the one used here.</p>
-{_table(("where", "printed", "correct", "why"), errata)}
+{table(("where", "printed", "correct", "why"), errata)}
 <h2 id="claims">All claims</h2>
 <p>The same as data: <a href="claims.json">claims.json</a>.</p>
 {_filter(chapters)}
-{_claims(_tables(chapters), "all-claims")}""",
+{claims_table(_tables(chapters), "all-claims")}""",
         _asset("report.js"),
     )
 
@@ -239,12 +237,12 @@ def _tables(chapters: Sequence[ChapterPage], differing: bool = False, notes: boo
     parts = []
     for chapter in chapters:
         rows = "".join(
-            _claim(claim, notes, f"{chapter.id}.html#{claim['id']}")
+            claim_row(claim, notes, f"{chapter.id}.html#{claim['id']}")
             for claim in chapter.claims
             if not (differing and claim["holds"])
         )
         if rows:
-            heading = f'<tr><th colspan="{len(_COLUMNS)}">{escape(chapter.name)}</th></tr>'
+            heading = f'<tr><th colspan="{len(COLUMNS)}">{escape(chapter.name)}</th></tr>'
             parts.append(f'<tbody data-chapter="{escape(chapter.id)}">{heading}{rows}</tbody>')
     return "".join(parts)
 
@@ -274,17 +272,17 @@ def _section(section: Section) -> str:
     if section.motion is not None:
         parts.append(_motion(section.motion, section.title))
     if section.table is not None:
-        parts.append(_table(*section.table))
+        parts.append(table(*section.table))
     if section.data is not None:
         parts.append(f'<p class="files"><a href="{escape(section.data)}">The table as CSV</a></p>')
     if section.claims:
         agree = sum(bool(claim["holds"]) for claim in section.claims)
         count = len(section.claims)
         opened = "" if agree == count and count > 12 else " open"
-        rows = "".join(_claim(claim, True) for claim in section.claims)
+        rows = "".join(claim_row(claim, True) for claim in section.claims)
         parts.append(
             f"<details{opened}><summary>{_agreement(count, agree)}</summary>"
-            f"{_claims(f'<tbody>{rows}</tbody>')}</details>"
+            f"{claims_table(f'<tbody>{rows}</tbody>')}</details>"
         )
     return "".join(parts) + "</section>\n"
 
@@ -321,46 +319,3 @@ def _agreement(count: int, agree: int) -> str:
     if agree == count:
         return f"All {count} claims agree"
     return f"{agree} of {count} claims agree; {count - agree} misprinted or different"
-
-
-def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    head = "".join(f"<th>{escape(cell)}</th>" for cell in header)
-    body = "".join(
-        "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
-    )
-    return (
-        f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>'
-        "</div>"
-    )
-
-
-def _claims(bodies: str, id: str = "") -> str:
-    """A table of claims, a card for each on a phone."""
-    head = "".join(f"<th>{name}</th>" for name in _COLUMNS)
-    named = f' id="{id}"' if id else ""
-    return f'<table class="claims"{named}><thead><tr>{head}</tr></thead>{bodies}</table>'
-
-
-def _claim(claim: Record, notes: bool, link: str = "") -> str:
-    """A row; its ID is a link, or where a link leads."""
-    mark = '<td class="yes">✓ agrees</td>' if claim["holds"] else '<td class="no">≠ differs</td>'
-    words = escape(str(claim["claim"]))
-    if notes and claim["note"]:
-        words += f'<br><span class="note">{escape(str(claim["note"]))}</span>'
-    unit = "" if claim["unit"] in ("", "1") else f" {claim['unit']}"
-    within = "" if claim["tolerance"] is None else f" ± {claim['tolerance']:g}"
-    thesis = escape(_shown(claim["thesis"]) + within + unit)
-    computed = escape(_shown(claim["computed"]) + unit)
-    id = escape(str(claim["id"]))
-    place = "" if link else f' id="{id}"'
-    name = f'<a href="{escape(link)}">{id}</a>' if link else id
-    holds = "yes" if claim["holds"] else "no"
-    return (
-        f'<tr{place} data-holds="{holds}">{mark}<td>{escape(str(claim["where"]))}</td>'
-        f'<td>{words}</td><td class="n" data-is="thesis">{thesis}</td>'
-        f'<td class="n" data-is="computed">{computed}</td><td class="id">{name}</td></tr>'
-    )
-
-
-def _shown(value: float | str) -> str:
-    return value if isinstance(value, str) else f"{value:.5g}"
