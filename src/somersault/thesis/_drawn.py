@@ -54,7 +54,8 @@ def _series(ax: Axes) -> Iterator[_Series]:
 
     for line in ax.get_lines():
         if line.get_transform() == ax.transData and len(np.atleast_1d(line.get_xdata())) > 0:
-            yield "line", _name(line), _rows(*map(_numbers, line.get_data()))
+            x, y = line.get_data()
+            yield "line", _name(line), _rows(_numbers(x), _numbers(y))
     for bars in ax.containers:
         for bar in getattr(bars, "patches", ()):
             yield "bar", _name(bars), _rows([bar.get_x() + bar.get_width() / 2], [bar.get_height()])
@@ -66,16 +67,20 @@ def _of_collection(ax: Axes, part: Any) -> Iterator[_Series]:
     from matplotlib.collections import LineCollection, PathCollection, PolyCollection, QuadMesh
 
     values = None if part.get_array() is None else np.ma.filled(part.get_array(), np.nan).ravel()
+    numbers: Any  # of any shape, says matplotlib
     if isinstance(part, PathCollection):
-        yield "dots", _name(part), _rows(*np.ma.filled(part.get_offsets(), np.nan).T, values)
+        numbers = np.ma.filled(part.get_offsets(), np.nan)
+        yield "dots", _name(part), _rows(numbers[:, 0], numbers[:, 1], values)
     elif isinstance(part, QuadMesh):
-        corners = part.get_coordinates()
-        middles = (corners[:-1, :-1] + corners[1:, 1:]) / 2
-        yield "map", _name(part), _rows(*middles.reshape(-1, 2).T, values)
+        numbers = part.get_coordinates()
+        middles = ((numbers[:-1, :-1] + numbers[1:, 1:]) / 2).reshape(-1, 2)
+        yield "map", _name(part), _rows(middles[:, 0], middles[:, 1], values)
     elif isinstance(part, PolyCollection | LineCollection) and part.get_transform() == ax.transData:
         for path in part.get_paths():
-            kind = "line" if isinstance(part, LineCollection) else "edge of a band"
-            yield kind, _name(part), _rows(*path.vertices.T)
+            kind, numbers = "edge of a band", path.vertices
+            if isinstance(part, LineCollection):
+                kind = "line"
+            yield kind, _name(part), _rows(numbers[:, 0], numbers[:, 1])
 
 
 def _of_contours(part: Any) -> Iterator[_Series]:
@@ -83,7 +88,8 @@ def _of_contours(part: Any) -> Iterator[_Series]:
     levels = part.layers if part.filled else part.levels
     for level, path in zip(levels, part.get_paths(), strict=True):
         for corners in path.to_polygons(closed_only=False):
-            yield kind, _name(part), _rows(*corners.T, np.full(len(corners), float(level)))
+            values = np.full(len(corners), float(level))
+            yield kind, _name(part), _rows(corners[:, 0], corners[:, 1], values)
 
 
 def _name(artist: Any) -> str:

@@ -68,7 +68,10 @@ def sec_5_4() -> Result:
                 for fit in map(_fit, _REACHES)
             ),
         ),
-        Motion({"swung round the bar, let go at 0 s": doll_along(throw)}, 0.5),
+        Motion(
+            {"swung round the bar, let go at 0 s": doll_along(throw)}, 0.5,
+            {"follow": False, "size": (640, 880), "camera": (90.0, 6.0)},
+        ),
     )  # fmt: skip
 
 
