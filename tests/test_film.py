@@ -122,6 +122,20 @@ def test_pictures(flight, tmp_path):
     assert Image.open(tmp_path / "all.png").size == (1440, 640)
 
 
+@pytest.mark.parametrize("follow", [True, False])
+def test_a_picture_is_a_frame_of_the_film(tmp_path, follow):
+    from PIL import Image
+
+    rising = so.Takeoff(spin=8.6, velocity=(2.0, 0.0, 3.0))
+    flight = so.fly("furrer", rising, 0.5, gravity=(0.0, 0.0, -9.81))
+    flight.picture(tmp_path / "one.png", 0.2, size=SIZE, follow=follow)
+    flight.picture(tmp_path / "two.png", [0.2, 0.1], size=SIZE, follow=follow)
+    seen = flight.frame(0.2, size=SIZE, follow=follow)
+    assert np.array_equal(np.asarray(Image.open(tmp_path / "one.png")), seen)
+    both = np.asarray(Image.open(tmp_path / "two.png")).astype(int)[:, : SIZE[0]]
+    assert (np.abs(both - seen).max(-1) > 40).mean() < 0.01  # edges fall otherwise
+
+
 def test_a_stroboscope_shows_the_parabola(tmp_path):
     from PIL import Image
 

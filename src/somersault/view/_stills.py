@@ -18,7 +18,7 @@ from somersault._core.places import check_file
 from somersault.view._actor import Actor
 from somersault.view._canvas import blank
 from somersault.view._lettering import write_on
-from somersault.view._look import look_of, several
+from somersault.view._look import Look, look_of, several
 from somersault.view._scene import Scene
 from somersault.view._stage import Stage
 
@@ -57,11 +57,8 @@ def frame(histories: History | Sequence[History], time: float, **look: Any) -> A
     (180, 320, 3)
     """
     shown = several("histories", histories, 1)
-    moment = np.array([number("time", time)])
-    # What the eye takes in is that of the whole film.
-    whole = np.unique(np.concatenate([moment, _spread(shown, 60)]))
-    scene = Scene(shown, whole, look_of(look))
-    return scene.frame(int(np.searchsorted(whole, moment[0])))[..., :3].copy()
+    scene, (place,) = _of_the_film(shown, np.array([number("time", time)]), look_of(look))
+    return scene.frame(place)[..., :3].copy()
 
 
 def picture(
@@ -113,12 +110,19 @@ def picture(
             f"that is a picture of {width * columns} x {height * rows} pixels; give a smaller "
             "size or fewer times"
         )
-    scene = Scene(shown, moments, chosen)
+    scene, places = _of_the_film(shown, moments, chosen)
     sheet = blank(width * columns, height * rows)
-    for k in range(len(moments)):
+    for k, place in enumerate(places):
         top, left = k // columns * height, k % columns * width
-        sheet[top : top + height, left : left + width] = scene.frame(k)
+        sheet[top : top + height, left : left + width] = scene.frame(place)
     write(file, png(sheet))
+
+
+def _of_the_film(shown: Sequence[History], moments: Array, look: Look) -> tuple[Scene, list[int]]:
+    """A scene in which the eye takes in what it does in the whole film, and where some moments
+    stand in it."""
+    whole = np.unique(np.concatenate([moments, _spread(shown, 60)]))
+    return Scene(shown, whole, look), np.searchsorted(whole, moments).tolist()
 
 
 def stroboscopic_picture(
