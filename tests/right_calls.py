@@ -813,6 +813,14 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     ),
     "ensembles.Ensemble.open": lambda: (so.Ensemble.open, {"path": "store.nc"}),
     "ensembles.Ensemble.plot": lambda: (scattered().plot, {"name": "tilt"}),
+    "ensembles.Ensemble.landings": lambda: (
+        scattered().landings,
+        {"path": "landings.png", "tolerance": 0.1, "most": 3, "columns": 2, "size": (64, 64)},
+    ),
+    "ensembles.Ensemble.landings_good": lambda: (
+        scattered().landings,
+        {"path": "landings.png", "good": scattered().dataset["tilt"] > 0, "most": 2},
+    ),
     "ensembles.Ensemble.quantiles": lambda: (
         scattered().quantiles,
         {"name": "tilt", "q": (0.5,), "over": "sample"},
@@ -1000,6 +1008,20 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     "view.camera": lambda: (view.camera, {"azimuth": 35.0, "elevation": 12.0, "axes": (2, 1, 3)}),
     "view.check_film": lambda: (view.check_film, {"path": "film.gif"}),
     "view.check_page": lambda: (view.check_page, {"path": "page.html"}),
+    "view.check_landings": lambda: (view.check_landings, {"path": "landings.png"}),
+    "view.landings_picture": lambda: (
+        view.landings_picture,
+        {
+            "poses": flown(),
+            "path": "landings.png",
+            "colors": ["#0072B2"] * len(flown().times),
+            "words": [""] * len(flown().times),
+            "key": [("#0072B2", "blue")],
+            "columns": 2,
+            "superimposed": False,
+            "size": (64, 64),
+        },
+    ),
     "view.contact_sheet": lambda: (
         view.contact_sheet,
         {"history": flown(), "times": [0.0, 0.05], "columns": 2, "view": (35.0, 12.0), "title": ""},

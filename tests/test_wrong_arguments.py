@@ -127,6 +127,7 @@ NOT_FOR_USERS = {
             "Begun*",
             "Flight",
             "Flights",
+            "Flights.history",
             "Flights.run",
             "Flights.sound",
             "Flights.with_varied",

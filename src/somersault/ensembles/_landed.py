@@ -50,6 +50,10 @@ def landings(
         raise SomersaultError(f"runs of {simulation.name} have no history that could be drawn")
     if good is not None and tolerance is not None:
         raise SomersaultError("good and tolerance are both given; give one, to say what landed")
+    if good is not None and getattr(getattr(good, "dtype", None), "kind", "") != "b":
+        raise SomersaultError("good must be true or false for each flight, like data.tilt < 0.1")
+    if good is not None and dict(getattr(good, "sizes", {})) != plan.dims:
+        raise SomersaultError("good must say it of each flight, over all dimensions of the dataset")
     most = whole_number("most", most, 1, _MOST)
     numbers, columns = _chosen(plan.dims, most)
     runs = _picked(data, plan.dims, numbers)
