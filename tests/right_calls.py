@@ -1008,7 +1008,6 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     "view.camera": lambda: (view.camera, {"azimuth": 35.0, "elevation": 12.0, "axes": (2, 1, 3)}),
     "view.check_film": lambda: (view.check_film, {"path": "film.gif"}),
     "view.check_page": lambda: (view.check_page, {"path": "page.html"}),
-    "view.check_landings": lambda: (view.check_landings, {"path": "landings.png"}),
     "view.landings_picture": lambda: (
         view.landings_picture,
         {
