@@ -15,7 +15,7 @@ from somersault.view._actor import Actor
 from somersault.view._canvas import Canvas, Ground, Surface, lamp_direction
 from somersault.view._eye import Eye
 from somersault.view._ground import BACKDROP
-from somersault.view._meshes import coarser, figure_of
+from somersault.view._meshes import figure_of
 from somersault.view._stage import Stage
 
 RED, BLUE = (0.8, 0.1, 0.1), (0.1, 0.1, 0.8)

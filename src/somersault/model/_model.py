@@ -6,16 +6,22 @@ A `Model` is a value: it is read once, never changed, and knows nothing of motio
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+import warnings
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from somersault._core.checks import shown, text
-from somersault._core.errors import SomersaultError
+from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault.attitude import AXES, Axes, as_axes
 from somersault.model._bodies import Body, Follow, Joint, coordinate_names, speed_names
 from somersault.model._refused import check
+from somersault.model._strange import listed
+from somersault.model.shapes import Mesh, Shape
+
+_MOST_TRIANGLES = 4_000_000  # of one model, beyond which no file is read
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,10 +95,40 @@ class Model:
         parts = [f"{n} {one if n == 1 else many}" for n, one, many in counts]
         return f"<Model {self.name!r}: {', '.join(parts)}, {self.mass:g} kg, {base}>"
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Without what follows from it: models are sent to other processes."""
+        return {own.name: getattr(self, own.name) for own in fields(self)}
+
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
         """Every joint, in the order of the bodies: the order of all coordinate vectors."""
         return tuple(joint for body in self.bodies for joint in body.joints)
+
+    @cached_property
+    def solids(self) -> tuple[tuple[Shape, ...], ...]:
+        """What there is to see of each body: its shapes, and what is in the files that some of
+        them stand for, which are read here. What cannot be read is left out with a
+        SomersaultWarning that names it."""
+        rows, left_out, count = [], list[str](), 0
+        for body in self.bodies:
+            row: list[Shape] = []
+            for shape in body.shapes:
+                try:
+                    if count > _MOST_TRIANGLES:
+                        raise SomersaultError(f"all beyond {_MOST_TRIANGLES} triangles")
+                    solids = shape.solids()
+                except SomersaultError as error:
+                    left_out.append(str(error))
+                    continue
+                count += sum(len(solid.faces) for solid in solids if isinstance(solid, Mesh))
+                row += solids
+            rows.append(tuple(row))
+        if left_out:
+            what = listed(list(dict.fromkeys(left_out)))
+            warnings.warn(
+                f"{self.name}: shapes left out: {what}", SomersaultWarning, stacklevel=2
+            )
+        return tuple(rows)
 
     @cached_property
     def coordinates(self) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ _THICK = 0.02  # radius of a stick, over the size of the model
 
 
 def model_shapes(model: Model) -> tuple[tuple[Shape, ...], ...]:
-    """What there is to draw of each body: its own shapes, or sticks if no body has any.
+    """What there is to draw of each body: its `solids`, or sticks if no body has any.
 
     Parameters
     ----------
@@ -26,8 +26,8 @@ def model_shapes(model: Model) -> tuple[tuple[Shape, ...], ...]:
     tuple of tuple of Shape
         For each body, in its axes.
     """
-    shapes = tuple(body.shapes for body in instance("model", model, Model).bodies)
-    return shapes if any(shapes) else _sticks(model)
+    solids = instance("model", model, Model).solids
+    return solids if any(solids) else _sticks(model)
 
 
 def _sticks(model: Model) -> tuple[tuple[Shape, ...], ...]:

@@ -81,7 +81,7 @@ def mjcf(model: Model) -> str:
         above[index] = _add_body(above[body.parent], body, base)
         if base:
             _add_root(above[index], model)
-        for number, shape in enumerate(body.shapes):
+        for number, shape in enumerate(model.solids[index]):
             _add_shape(above[index], assets, shape, f"{body.name}.{number}")
     _add_followers(root, model)
     indent(root)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.model import Model, model_shapes
-from somersault.model.shapes import Color, Mesh, Shape, loft
+from somersault.model.shapes import Color, Mesh, Shape, coarser, loft
 from somersault.view._canvas import Surface
 
 TRUNK, LIMBS = (0.36, 0.53, 0.74), (0.90, 0.69, 0.46)  # of what has no colour of its own
@@ -94,34 +94,6 @@ def _closed(shape: Shape) -> bool:
     ways = [corners[:, a] * count + corners[:, b] for a, b in ((0, 1), (1, 2), (2, 0))]
     back = [corners[:, b] * count + corners[:, a] for a, b in ((0, 1), (1, 2), (2, 0))]
     return np.array_equal(np.sort(np.concatenate(ways)), np.sort(np.concatenate(back)))
-
-
-def coarser(mesh: Mesh, most: int) -> Mesh:
-    """A mesh of at most so many triangles: corners that stand in one cell of a lattice are one."""
-    if len(mesh.faces) <= most:
-        return mesh
-    low = mesh.vertices.min(0)
-    size = float(np.ptp(mesh.vertices, axis=0).max()) or 1.0
-    cells = int(np.sqrt(most)) + 4
-    while True:
-        grid = np.minimum((mesh.vertices - low) * (cells / size), cells - 1).astype(np.int64)
-        keys = (grid[:, 0] * cells + grid[:, 1]) * cells + grid[:, 2]
-        _, place, count = np.unique(keys, return_inverse=True, return_counts=True)
-        place = place.reshape(-1)
-        faces = place[mesh.faces]
-        a, b, c = faces.T
-        faces = faces[(a != b) & (b != c) & (c != a)]
-        if len(faces):  # of those that have become one, one
-            order = np.sort(faces, 1)
-            name = (order[:, 0] * len(count) + order[:, 1]) * len(count) + order[:, 2]
-            faces = faces[np.unique(name, return_index=True)[1]]
-        if len(faces) <= most or cells <= 2:
-            break
-        cells = max(2, int(cells * min(0.9, np.sqrt(most / len(faces)))))
-    if not len(faces):
-        return mesh
-    middles = [np.bincount(place, mesh.vertices[:, k]) / count for k in range(3)]
-    return replace(mesh, vertices=np.stack(middles, -1), faces=faces)
 
 
 def arrow() -> Mesh:

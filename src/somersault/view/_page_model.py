@@ -9,8 +9,8 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault.model import Model, model_shapes
-from somersault.model.shapes import Mesh, Shape
-from somersault.view._meshes import coarser, colour_of, of_trunk
+from somersault.model.shapes import Mesh, Shape, coarser
+from somersault.view._meshes import colour_of, of_trunk
 
 _KINDS = {"f4": "<f4", "u2": "<u2", "u4": "<u4"}
 _LEAST = 60  # triangles that each mesh may keep

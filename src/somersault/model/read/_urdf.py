@@ -1,4 +1,4 @@
-"""The dynamics of a URDF file as a `Model`: its links' inertias and its joints, and no shape.
+"""A URDF file as a `Model`: its links' inertias, its joints, and, for pictures, its visuals.
 
 The reader is ours because MuJoCo's compiles the meshes, refuses what cannot be simulated and gives
 a link without <inertial> the mass of its shape, and because the parsers on PyPI bring lxml and
@@ -21,8 +21,10 @@ from somersault.model._base import Base, rooted
 from somersault.model._bodies import GROUND, Body, Joint
 from somersault.model._model import Model
 from somersault.model._vectors import as_matrix, as_vector
+from somersault.model.read._drawn import Drawn
 from somersault.model.read._follow import leaders
 from somersault.model.read._urdf_elements import Elements, UrdfJoint
+from somersault.model.read._urdf_shapes import link_shapes
 from somersault.model.read._xml import read_xml
 
 _GROUND_LINK = "world"  # by the custom of ROS
@@ -47,13 +49,15 @@ def read_urdf(path: Path, base: Base | None = None) -> Model:
     SomersaultError
         For a file that is no robot, or none that can fly.
     """
-    file = Elements(path.name, read_xml(path))
+    robot = read_xml(path)
+    file = Elements(path.name, robot)
     if not any(link.mass > 0 for link in file.links.values()):
         raise SomersaultError(
             f"{path.name} has no mass: no link of it has an <inertial> with one; add masses"
         )
     order, free = _order(file, _root(file), _moving_something(file, _led(file)))
-    on = rooted(path.name, _bodies(file, order), free, base)
+    drawn = link_shapes(file, robot, path.parent)
+    on = rooted(path.name, _bodies(file, order, drawn), free, base)
     if not on.bodies:
         raise SomersaultError(
             f"{path.name} is fixed to the ground as a whole, so nothing can fly; load it with "
@@ -201,7 +205,7 @@ def _order(file: Elements, root: str, joints: list[UrdfJoint]) -> tuple[_Order, 
     return order, not frame and root != _GROUND_LINK
 
 
-def _bodies(file: Elements, order: _Order) -> list[Body]:
+def _bodies(file: Elements, order: _Order, drawn: Drawn) -> list[Body]:
     numbers = {name: number for number, (name, _) in enumerate(order)}
     bodies = []
     for name, joint in order:
@@ -212,6 +216,7 @@ def _bodies(file: Elements, order: _Order) -> list[Body]:
             link.mass,
             as_vector(link.com),
             as_matrix(link.inertia),
+            shapes=drawn.of(name),
             inertia_from="file" if link.given else "nothing",
         )
         if joint is not None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import difflib
 import math
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -140,15 +141,15 @@ class Elements:
             return Link(name, 0.0, np.zeros(3), np.zeros((3, 3)), given=False)
         self._sort(inertial, "inertial", where)
         self._once(inertial, where)
-        com, rotation = self._origin(inertial, where)
-        mass = self._number(self._needed(inertial, "mass", where), "value", where)
-        moments = self._needed(inertial, "inertia", where)
-        xx, yy, zz = (self._number(moments, word, where) for word in ("ixx", "iyy", "izz"))
+        com, rotation = self.origin(inertial, where)
+        mass = self.number(self.needed(inertial, "mass", where), "value", where)
+        moments = self.needed(inertial, "inertia", where)
+        xx, yy, zz = (self.number(moments, word, where) for word in ("ixx", "iyy", "izz"))
         products = []
         for word in ("ixy", "ixz", "iyz"):
             if word not in moments.attributes:
                 self.strange.add("products of inertia that are not given count as zero", where)
-            products.append(self._number(moments, word, where, 0.0))
+            products.append(self.number(moments, word, where, 0.0))
         xy, xz, yz = products
         inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
         return Link(name, mass, com, rotation @ inertia @ rotation.T)
@@ -167,13 +168,13 @@ class Elements:
             )
         ends = []
         for end in ("parent", "child"):
-            link = self._word(self._needed(element, end, where), "link", where)
+            link = self.word(self.needed(element, end, where), "link", where)
             if link not in self.links:
                 raise self._error(element, f"{where} has the {end} {link!r}, which is no link")
             ends.append(link)
-        position, rotation = self._origin(element, where)
+        position, rotation = self.origin(element, where)
         dynamics = element.first("dynamics")
-        if dynamics is not None and self._number(dynamics, "friction", where, 0.0) != 0:
+        if dynamics is not None and self.number(dynamics, "friction", where, 0.0) != 0:
             self.strange.add("joints' dry friction is left out", name)
         return UrdfJoint(
             name,
@@ -191,7 +192,7 @@ class Elements:
     def _damping(self, dynamics: Element | None, where: str) -> float:
         if dynamics is None:
             return 0.0
-        damping = self._number(dynamics, "damping", where, 0.0)
+        damping = self.number(dynamics, "damping", where, 0.0)
         if damping < 0:
             raise self._error(
                 dynamics, f"{where} has the negative damping {damping:g}; make it zero or positive"
@@ -202,7 +203,7 @@ class Elements:
         given = element.first("axis")
         if given is None or kind in ("fixed", "floating"):
             return np.array([1.0, 0.0, 0.0])
-        axis = self._vector(given, "xyz", where, (1.0, 0.0, 0.0))
+        axis = self.vector(given, "xyz", where, (1.0, 0.0, 0.0))
         length = math.hypot(*axis)
         if length < 1e-9:
             raise self._error(given, f"{where} has an axis of no length; give its direction")
@@ -234,22 +235,22 @@ class Elements:
         if given is None:
             return None
         return Follow(
-            self._word(given, "joint", where),
-            self._number(given, "multiplier", where, 1.0),
-            self._number(given, "offset", where, 0.0),
+            self.word(given, "joint", where),
+            self.number(given, "multiplier", where, 1.0),
+            self.number(given, "offset", where, 0.0),
         )
 
-    def _origin(self, element: Element, where: str) -> tuple[Array, Array]:
+    def origin(self, element: Element, where: str) -> tuple[Array, Array]:
         """Position in m and rotation (columns: the axes of what stands there)."""
         given = element.first("origin")
         if given is None:
             return np.zeros(3), np.eye(3)
-        roll, pitch, yaw = self._vector(given, "rpy", where, (0.0, 0.0, 0.0))
+        roll, pitch, yaw = self.vector(given, "rpy", where, (0.0, 0.0, 0.0))
         (cr, sr), (cp, sp), (cy, sy) = ((math.cos(a), math.sin(a)) for a in (roll, pitch, yaw))
         about_x = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
         about_y = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
         about_z = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])
-        return self._vector(given, "xyz", where, (0.0, 0.0, 0.0)), about_z @ about_y @ about_x
+        return self.vector(given, "xyz", where, (0.0, 0.0, 0.0)), about_z @ about_y @ about_x
 
     # ---------------------------------------------------------------------- words and numbers
 
@@ -259,41 +260,48 @@ class Elements:
             raise self._error(element, f"a {element.tag} has no name; name it")
         return name
 
-    def _needed(self, element: Element, tag: str, where: str) -> Element:
+    def needed(self, element: Element, tag: str, where: str) -> Element:
         child = element.first(tag)
         if child is None:
             raise self._error(element, f"{where} has no <{tag}>, which it needs; add it")
         return child
 
-    def _word(self, element: Element, attribute: str, where: str) -> str:
+    def word(self, element: Element, attribute: str, where: str) -> str:
         word = element.attributes.get(attribute, "")
         if not word:
             raise self._error(element, f"the <{element.tag}> of {where} has no {attribute}; add it")
         return word
 
-    def _number(
+    def number(
         self, element: Element, attribute: str, where: str, default: float | None = None
     ) -> float:
-        text = element.attributes.get(attribute)
-        if text is None and default is not None:
-            return default
-        if text is None:
-            raise self._error(
-                element, f"the <{element.tag}> of {where} has no {attribute}; add a number"
-            )
-        return self._numbers(element, attribute, where, text, 1)[0]
+        return self.numbers(element, attribute, where, 1, None if default is None else [default])[0]
 
-    def _vector(
-        self, element: Element, attribute: str, where: str, default: tuple[float, float, float]
+    def vector(
+        self,
+        element: Element,
+        attribute: str,
+        where: str,
+        default: tuple[float, float, float] | None = None,
     ) -> Array:
+        return np.array(self.numbers(element, attribute, where, 3, default))
+
+    def numbers(
+        self,
+        element: Element,
+        attribute: str,
+        where: str,
+        count: int,
+        default: Sequence[float] | None = None,
+    ) -> list[float]:
         text = element.attributes.get(attribute)
         if text is None:
-            return np.array(default)
-        return np.array(self._numbers(element, attribute, where, text, 3))
-
-    def _numbers(
-        self, element: Element, attribute: str, where: str, text: str, count: int
-    ) -> list[float]:
+            if default is not None:
+                return list(default)
+            add = "a number" if count == 1 else f"{count} numbers"
+            raise self._error(
+                element, f"the <{element.tag}> of {where} has no {attribute}; add {add}"
+            )
         words = text[:1000].split()
         try:
             values = [float(word) for word in words if "_" not in word]

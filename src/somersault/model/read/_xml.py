@@ -79,33 +79,34 @@ def read_xml(path: Path, latin: bool = False) -> Element:
         For a file that cannot be read, is too large or too deep, is not XML, or declares
         entities.
     """
-    text = _text(path, latin)
+    return parse_xml(path.name, _bytes(path), latin)[0]
+
+
+def parse_xml(name: str, data: bytes, latin: bool = False) -> tuple[Element, str]:
+    """The root element of what a file of some name holds, and its text; see `read_xml`."""
+    text = _decoded(name, data, latin).lstrip("\ufeff \t\r\n\0")
     try:
-        return _Tree(path.name).parse(text)
+        return _Tree(name).parse(text), text
     except expat.ExpatError:
-        mended = _BARE.sub("&amp;", _COMMENT.sub(_line_ends, text))
+        text = _BARE.sub("&amp;", _COMMENT.sub(_line_ends, text))
     try:
-        return _Tree(path.name).parse(mended)
+        return _Tree(name).parse(text), text
     except expat.ExpatError as error:
         reason = expat.errors.messages.get(error.code, "not well-formed")
         raise SomersaultError(
-            f"{path.name}, line {error.lineno}: it is not XML there ({reason}); correct it"
+            f"{name}, line {error.lineno}: it is not XML there ({reason}); correct it"
         ) from None
 
 
 def root_tag(path: Path) -> str:
     """The tag of a file's root element, or nothing where it has none that can be read."""
-    tags = re.finditer(r"<([A-Za-z_][\w:.-]*)", _COMMENT.sub("", _text(path)[: 2**20]))
+    text = _decoded(path.name, _bytes(path), latin=False)[: 2**20]
+    tags = re.finditer(r"<([A-Za-z_][\w:.-]*)", _COMMENT.sub("", text))
     return next((tag.group(1) for tag in tags), "")
 
 
 def _line_ends(match: re.Match[str]) -> str:
     return "\n" * match.group().count("\n")
-
-
-def _text(path: Path, latin: bool = False) -> str:
-    """The file as text without what stands before its first tag."""
-    return _decoded(path.name, _bytes(path), latin).lstrip("\ufeff \t\r\n\0")
 
 
 def _bytes(path: Path) -> bytes:

@@ -85,6 +85,16 @@ class Shape(ABC):
         points, radius = self._core()
         return Hull(points @ np.array(self.rotation).T + self.position, radius)
 
+    def solids(self) -> tuple[Shape, ...]:
+        """What is drawn of it, each of one colour: itself, unless it stands for a file.
+
+        Raises
+        ------
+        SomersaultError
+            For a file that cannot be read.
+        """
+        return (self,)
+
     def placed(self, position: Array, rotation: Array) -> Self:
         """The same shape on another body, in whose axes (3, 3) and at whose point (3,) its own
         body's frame stands; its mirror image if the axes are left-handed."""

@@ -1,0 +1,37 @@
+"""Meshes of fewer triangles."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from somersault.model.shapes._mesh import Mesh
+
+
+def coarser(mesh: Mesh, most: int) -> Mesh:
+    """A mesh of at most so many triangles: corners that stand in one cell of a lattice are one."""
+    if len(mesh.faces) <= most:
+        return mesh
+    low = mesh.vertices.min(0)
+    size = float(np.ptp(mesh.vertices, axis=0).max()) or 1.0
+    cells = int(np.sqrt(most)) + 4
+    while True:
+        grid = np.minimum((mesh.vertices - low) * (cells / size), cells - 1).astype(np.int64)
+        keys = (grid[:, 0] * cells + grid[:, 1]) * cells + grid[:, 2]
+        _, place, count = np.unique(keys, return_inverse=True, return_counts=True)
+        place = place.reshape(-1)
+        faces = place[mesh.faces]
+        a, b, c = faces.T
+        faces = faces[(a != b) & (b != c) & (c != a)]
+        if len(faces):  # of those that have become one, one
+            order = np.sort(faces, 1)
+            name = (order[:, 0] * len(count) + order[:, 1]) * len(count) + order[:, 2]
+            faces = faces[np.unique(name, return_index=True)[1]]
+        if len(faces) <= most or cells <= 2:
+            break
+        cells = max(2, int(cells * min(0.9, np.sqrt(most / len(faces)))))
+    if not len(faces):
+        return mesh
+    middles = [np.bincount(place, mesh.vertices[:, k]) / count for k in range(3)]
+    return replace(mesh, vertices=np.stack(middles, -1), faces=faces)
