@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import somersault as so
-from somersault.model.shapes import Box, Mesh, Sphere
+from somersault.model.shapes import Box, Mesh, Sphere, coarser
 from somersault.view import _meshes
 from somersault.view._actor import Actor
 from somersault.view._canvas import Canvas, Ground, Surface, lamp_direction

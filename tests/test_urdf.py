@@ -297,7 +297,7 @@ def test_what_is_strange_is_said(what: str) -> None:
 
 
 def test_what_has_no_part_in_flight_is_counted_and_nothing_else_is_said() -> None:
-    more = MESH.format("visual") + 2 * BOX
+    more = MESH.format("collision") + BOX + BOX.replace("collision", "visual")
     rest = "<gazebo/><transmission name='t'/><material name='m'/>" + joint(
         "hinge", "hub", "arm", more="<safety_controller k_velocity='1'/><calibration rising='0'/>"
     )

@@ -125,9 +125,7 @@ class Model:
             rows.append(tuple(row))
         if left_out:
             what = listed(list(dict.fromkeys(left_out)))
-            warnings.warn(
-                f"{self.name}: shapes left out: {what}", SomersaultWarning, stacklevel=2
-            )
+            warnings.warn(f"{self.name}: shapes left out: {what}", SomersaultWarning, stacklevel=2)
         return tuple(rows)
 
     @cached_property

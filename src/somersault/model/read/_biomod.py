@@ -3,13 +3,14 @@
 Meanings follow biorbd's sources (pyomeca/biorbd, src/ModelReader.cpp, src/RigidBody/Segment.cpp).
 The reader is ours because biobuddy 0.3.2 refuses `variables`, arithmetic, actuators, patches and
 the usual `root_actuated` header, takes the default of `rtinmatrix` wrongly in version 3, and
-needs two seconds and pandas to import; biorbd itself insists on opening the mesh files.
+needs two seconds and pandas to import; biorbd itself insists on opening the mesh files at once.
 """
 
 from __future__ import annotations
 
 import warnings
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,7 @@ from somersault.model.read._biomod_blocks import PassiveTorque
 from somersault.model.read._biomod_segment import AXES, GROUND_PARENT, Segment
 from somersault.model.read._biomod_text import File
 from somersault.model.read._biomod_words import Words, read_text, shown
+from somersault.model.read._drawn import Drawn
 
 
 def read_biomod(path: Path, base: Base | None = None) -> Model:
@@ -38,7 +40,7 @@ def read_biomod(path: Path, base: Base | None = None) -> Model:
     file = File(Words(path.name, read_text(path)))
     file.read()
     segments = list(file.segments.values())
-    bodies = _bodies(file, segments)
+    bodies = _bodies(file, segments, Drawn(path.parent, file.strange))
     _refuse_mirrors(path.name, merge_welded(bodies, free=False))
     on = rooted(path.name, bodies, free=False, base=base)
     if not on.bodies:
@@ -65,7 +67,7 @@ def read_biomod(path: Path, base: Base | None = None) -> Model:
     )
 
 
-def _bodies(file: File, segments: list[Segment]) -> list[Body]:
+def _bodies(file: File, segments: list[Segment], drawn: Drawn) -> list[Body]:
     numbers = {segment.name: number for number, segment in enumerate(segments)}
     heavy: set[str] = set()  # what has mass, or carries it
     for segment in reversed(segments):
@@ -78,6 +80,7 @@ def _bodies(file: File, segments: list[Segment]) -> list[Body]:
             names = ", ".join(joint.name for joint in joints)
             file.strange.add("joints that move no mass, and so left out", names)
             joints = ()
+        drawn.add(segment.name, partial(segment.look.shape, drawn))
         bodies.append(
             Body(
                 name=segment.name,
@@ -88,6 +91,7 @@ def _bodies(file: File, segments: list[Segment]) -> list[Body]:
                 position=segment.position,
                 rotation=segment.rotation,
                 joints=joints,
+                shapes=drawn.of(segment.name),
             )
         )
     return bodies

@@ -14,6 +14,7 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault.model._vectors import IDENTITY, ZERO, Matrix, Vector, as_matrix, as_vector
+from somersault.model.read._biomod_look import Look
 from somersault.model.read._biomod_words import Words, shown
 
 AXES: dict[str, Vector] = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -47,6 +48,7 @@ class Segment:
     position: Vector = ZERO
     rotation: Matrix = IDENTITY
     placed: bool = False  # its rt has been read
+    look: Look = field(default_factory=Look)
 
 
 class Properties:
@@ -78,13 +80,13 @@ class Properties:
             "inertia_xxyyzz": self._inertia,
             "rtinmatrix": self._rtinmatrix,
             "rt": self._rt,
-            "mesh": self._three,
-            "patch": self._three,
-            "meshcolor": self._three,
-            "meshscale": self._three,
+            "mesh": self._mesh,
+            "patch": self._mesh,
+            "meshcolor": self._mesh,
+            "meshscale": self._mesh,
             "meshrt": self._meshrt,
-            "meshfile": self._one,
-            "ply": self._one,
+            "meshfile": self._meshfile,
+            "ply": self._meshfile,
             "forceplate": self._one,
             "externalforceindex": self._one,
         }
@@ -229,17 +231,26 @@ class Properties:
                 return np.asarray(left @ right)
         raise self.words.error(f"{what} is not a rotation; give it orthonormal columns")
 
-    def _three(self, segment: Segment, key: str) -> None:
-        self.words.numbers(3, f"{key} of {shown(segment.name)}")
-        self._ignored["meshes"] = 0
+    def _mesh(self, segment: Segment, key: str) -> None:
+        numbers = self.words.numbers(3, f"{key} of {shown(segment.name)}")
+        look = segment.look
+        if key == "mesh":
+            look.points.append(numbers)
+        elif key == "patch":
+            look.patches.append(numbers)
+        elif key == "meshcolor":
+            look.paint(numbers)
+        else:
+            look.move(np.diag(numbers), np.zeros(3))
 
     def _meshrt(self, segment: Segment, key: str) -> None:
-        self._turned(f"{key} of {shown(segment.name)}")
+        segment.look.move(*self._turned(f"{key} of {shown(segment.name)}"))
+
+    def _meshfile(self, segment: Segment, key: str) -> None:
+        segment.look.take(self.words.word(f"the value of {key}"))
 
     def _one(self, segment: Segment, key: str) -> None:
         self.words.word(f"the value of {key}")
-        if key in ("meshfile", "ply"):
-            self._ignored["meshes"] = 0
 
 
 def speeds(segment: Segment) -> int:

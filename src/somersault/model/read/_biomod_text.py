@@ -34,7 +34,7 @@ _ENDS = {"endsegment", "endvariables", *ENDS}
 
 _RANGES = {"ranges", "rangesq", "rangesqdot", "rangesqddot", "jointdampings"}
 _INERTIAS = {"inertia", "inertiamatrix", "inertia_xxyyzz"}
-_SEVERAL = {"mesh", "patch"}
+_SEVERAL = {"mesh", "patch", "meshrt", "meshscale"}
 _DIGITS = "+-.0123456789"
 _ALIKE = 0.8  # of a word's letters: as near to a known word as this it is misspelt
 _MOST_SEGMENTS = 1000  # the largest athletes have some 150

@@ -19,11 +19,13 @@ from somersault.model._bodies import GROUND, Body
 from somersault.model._model import FileCoordinates, Model
 from somersault.model._strange import Strange
 from somersault.model._vectors import as_matrix, as_vector
+from somersault.model.read._drawn import Drawn
 from somersault.model.read._osim_functions import Line
 from somersault.model.read._osim_gears import Gears
 from somersault.model.read._osim_joints import FREE, Coordinate, Links, Move
 from somersault.model.read._osim_left_out import no_part_in_flight, note
 from somersault.model.read._osim_parts import GROUND_NAME, Part, parts_and_links
+from somersault.model.read._osim_shapes import body_shapes, geometry_folders
 from somersault.model.read._osim_words import Words
 from somersault.model.read._xml import read_xml
 
@@ -51,14 +53,15 @@ def read_osim(path: Path, base: Base | None = None) -> Model:
     if model is None:
         raise SomersaultError(f"{path.name} has no Model element, so it is no model of OpenSim")
     words = Words(path.name, model)
-    parts, links = parts_and_links(words, model)
+    parts, links, frames = parts_and_links(words, model)
     links = _outward(words, parts, _own_names([*links, *_let_go(parts, links)]))
     gears = Gears(words, model, links)
-    bodies = _bodies(parts, links, gears)
+    strange = Strange()
+    drawn = body_shapes(words, model, frames, Drawn(path.parent, strange, geometry_folders(path)))
+    bodies = _bodies(parts, links, gears, drawn)
     on = rooted(path.name, bodies, free=False, base=base)
     if not on.bodies:
         raise SomersaultError(f"{path.name}: nothing in it moves, so nothing can fly")
-    strange = Strange()
     note(strange, model, links, gears)
     for sentence in strange.sentences():
         warnings.warn(f"{path.name}: {sentence}", SomersaultWarning, stacklevel=4)
@@ -159,10 +162,11 @@ def _outward(words: Words, parts: dict[str, Part], links: list[Links]) -> list[L
     return outward
 
 
-def _bodies(parts: dict[str, Part], links: list[Links], gears: Gears) -> list[Body]:
+def _bodies(parts: dict[str, Part], links: list[Links], gears: Gears, drawn: Drawn) -> list[Body]:
     """The body at the end of each link."""
     places = {GROUND_NAME: GROUND} | {link.child: n for n, link in enumerate(links)}
-    return [_body(parts[link.child], link, places[link.parent], gears) for link in links]
+    bodies = [_body(parts[link.child], link, places[link.parent], gears) for link in links]
+    return [replace(body, shapes=drawn.of(body.name)) for body in bodies]
 
 
 def _body(part: Part, link: Links, parent: int, gears: Gears) -> Body:

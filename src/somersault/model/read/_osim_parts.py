@@ -35,12 +35,13 @@ class Part:
     inertia: Matrix
 
 
-def parts_and_links(words: Words, model: Element) -> tuple[dict[str, Part], list[Links]]:
-    """All bodies but the ground by their names, and all joints, in the order of the file."""
+def parts_and_links(words: Words, model: Element) -> tuple[dict[str, Part], list[Links], Frames]:
+    """All bodies but the ground by their names, all joints in the order of the file, and all
+    frames."""
     _refuse_files(words, model)
     parts, links, apart = dict[str, Part](), list[Links](), list[tuple[Element, str]]()
-    frames = _Frames(words)
-    for element, path in _components(model, ""):
+    frames = Frames(words)
+    for element, path in components(model, ""):
         name = element.attributes.get("name", "")
         if element.tag == "Body":
             if name.lower() != GROUND_NAME:
@@ -62,7 +63,7 @@ def parts_and_links(words: Words, model: Element) -> tuple[dict[str, Part], list
                 raise words.error(
                     f"joins the body {end!r}, which the model has not; correct it", link.element
                 )
-    return parts, links
+    return parts, links, frames
 
 
 def _refuse_files(words: Words, model: Element) -> None:
@@ -75,17 +76,17 @@ def _refuse_files(words: Words, model: Element) -> None:
             )
 
 
-def _components(element: Element, path: str) -> Iterator[tuple[Element, str]]:
+def components(element: Element, path: str) -> Iterator[tuple[Element, str]]:
     """Everything that may be a body, a joint or a frame, with its path, in the file's order."""
     for child in element.children:
         here = f"{path}/{child.attributes.get('name', '')}"
         if child.tag in _SETS:
-            yield from _components(child, f"/{_SETS[child.tag]}")
+            yield from components(child, f"/{_SETS[child.tag]}")
         elif child.tag in ("objects", "components", "frames"):
-            yield from _components(child, path)
+            yield from components(child, path)
         elif child.tag.endswith(("Body", "Joint", "Frame")) and child.tag != "Joint":
             yield child, here
-            yield from _components(child, here)
+            yield from components(child, here)
 
 
 def _part(words: Words, body: Element) -> Part:
@@ -177,7 +178,7 @@ def _unknown(words: Words, joint: Element) -> Exception:
 # ------------------------------------------------------------------- joints between frames
 
 
-class _Frames:
+class Frames:
     """Frames by their paths: where each is fixed, to which body."""
 
     def __init__(self, words: Words) -> None:
@@ -243,7 +244,7 @@ def _socket(words: Words, element: Element, name: str) -> str:
     raise words.error(f"has no socket_{name}; say what it is joined to", element)
 
 
-def _apart(words: Words, frames: _Frames, joint: Element, path: str) -> Links:
+def _apart(words: Words, frames: Frames, joint: Element, path: str) -> Links:
     if joint.tag not in KINDS:
         raise _unknown(words, joint)
     ends = [

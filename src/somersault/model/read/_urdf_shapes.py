@@ -6,6 +6,7 @@ first of a name counts; a mesh that has colours of its own keeps them.
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,7 @@ def link_shapes(file: Elements, robot: Element, folder: Path) -> Drawn:
     for link in robot.all("link"):
         name = link.attributes.get("name", "")
         for visual in link.all("visual"):
-            drawn.add(name, lambda v=visual, n=name: looks.shape(v, f"link {n!r}"))  # type: ignore[misc]
+            drawn.add(name, partial(looks.shape, visual, f"link {name!r}"))
     return drawn
 
 
@@ -35,7 +36,9 @@ class _Looks:
         self._file = file
         self._drawn = drawn
         self._colors: dict[str, Color | None] = {}
-        inner = [m for link in robot.all("link") for v in link.all("visual") for m in v.all("material")]
+        inner = [
+            m for link in robot.all("link") for v in link.all("visual") for m in v.all("material")
+        ]
         for material in [*robot.all("material"), *inner]:
             name = material.attributes.get("name", "")
             if name and name not in self._colors and material.first("color") is not None:
@@ -73,7 +76,9 @@ class _Looks:
             return None
         geometry = visual.first("geometry")
         if geometry is None or not geometry.children:
-            raise SomersaultError(f"{file.file}, line {visual.line}: a visual of {where} has no shape")
+            raise SomersaultError(
+                f"{file.file}, line {visual.line}: a visual of {where} has no shape"
+            )
         kind = geometry.children[0]
 
         def half(attribute: str) -> float:

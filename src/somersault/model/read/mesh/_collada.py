@@ -19,6 +19,7 @@ from somersault.model.read.mesh._part import Part, fans, xml
 from somersault.model.shapes import Color
 
 _MOST_NODES = 20_000  # of a scene, in which one node may stand many times
+_MATERIALS = re.compile(r"<bind_material.*?</bind_material>", re.DOTALL)
 _DECLARATION = re.compile(r"\A<\?xml[^>]*\?>")
 
 
@@ -31,6 +32,8 @@ def parts(data: bytes) -> Iterator[Part]:
     text = _DECLARATION.sub("", xml(data)[1])
     try:
         file = Collada(BytesIO(text.encode()), ignore=[DaeError])
+        if file.errors:  # an object without its material would be lost
+            file = Collada(BytesIO(_MATERIALS.sub("", text).encode()), ignore=[DaeError])
     except (DaeError, AttributeError, TypeError, SyntaxError):
         raise ValueError("it is no scene") from None
     unit = file.assetInfo.unitmeter

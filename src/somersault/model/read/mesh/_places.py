@@ -44,7 +44,7 @@ def mesh_file(name: str, folder: Path, beside: Sequence[Path] = ()) -> Path:
     SomersaultError
         With the reason alone, for what is not to be read.
     """
-    if not os.path.splitext(name)[1].lower() in ENDINGS:
+    if os.path.splitext(name)[1].lower() not in ENDINGS:
         raise SomersaultError(f"is none of {', '.join(ENDINGS)}")
     try:
         for place in _places(name.strip(), folder, beside):

@@ -102,7 +102,7 @@ class _Arrays:
             return part, end
 
         def header(count: int) -> list[int]:
-            return np.frombuffer(taken(0, count * width)[0], self._header).tolist()  # type: ignore[no-any-return]
+            return np.frombuffer(taken(0, count * width)[0], self._header).tolist()
 
         width = self._header.itemsize
         if self._unpack is None:
