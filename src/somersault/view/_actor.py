@@ -122,11 +122,15 @@ class Actor:
 
     @cached_property
     def outline(self) -> tuple[Array, Array]:
-        """Corners at some moments spread over all, (moments, n, 3), and the centres of mass then,
-        (moments, 3)."""
+        """What stands out farthest at some moments spread over all, (moments, n, 3), and the
+        centres of mass then, (moments, 3)."""
         count = len(self.moments)
         which = np.unique(np.linspace(0, count - 1, min(count, _SPREAD)).round().astype(int))
-        return np.array([self.corners(int(k))[0] for k in which]), self.centres[which]
+        figure = self.figure
+        bodies, points = figure.bodies[figure.far], figure.points[figure.far]
+        axes, origins = (values[which] for values in self.frames)
+        turned = np.einsum("knij,nj->kni", axes[:, bodies], points)
+        return turned + origins[:, bodies], self.centres[which]
 
 
 def values_at(times: Array, values: Array, moments: Array) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -16,6 +17,7 @@ TRUNK, LIMBS = (0.36, 0.53, 0.74), (0.90, 0.69, 0.46)  # of what has no colour o
 _MOST_FACES = 60_000  # of a whole model
 _TRUNK = 0.2  # of the mass: a body that has more is of the trunk
 _MOST_READ = 20_000_000
+_RAYS = 256  # between which a surface bulges by less than a hundredth of its size
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +29,25 @@ class Figure:
     bodies: Array
     points: Array
     normals: Array
+
+    @cached_property
+    def far(self) -> Array:
+        """Which corners stand farthest out on their bodies, in directions all around."""
+        rays = _around(_RAYS).astype(np.float32)
+        points = self.points.astype(np.float32)
+        far = []
+        for body in np.unique(self.bodies):
+            rows = np.flatnonzero(self.bodies == body)
+            far += [rows[np.argmax(points[rows] @ some.T, 0)] for some in np.split(rays, 8)]
+        return np.unique(np.concatenate(far))
+
+
+def _around(count: int) -> Array:
+    """Unit vectors (count, 3), evenly all around: along a spiral by the golden angle."""
+    height = 1 - (2 * np.arange(count) + 1) / count
+    turn = np.pi * (3 - np.sqrt(5)) * np.arange(count)
+    across = np.sqrt(1 - height**2)
+    return np.stack([across * np.cos(turn), across * np.sin(turn), height], -1)
 
 
 def figure_of(model: Model, most: int = _MOST_FACES) -> Figure:

@@ -30,7 +30,7 @@ ENDINGS = (".html", ".htm")
 _MOST_FLIGHTS = 12
 _MOST_NUMBERS = 110_000  # of all flights together: a page is to stay below 1.5 MB
 _MOST_SAMPLES, _FEWEST_SAMPLES = 1000, 60
-_MOST_TRIANGLES = 12_000  # of all models together
+_MOST_SHAPE_BYTES = 480_000  # of all models together
 _PALETTE = {
     "light": {**look.LIGHT, "lines": look.LINES},
     "dark": {**look.DARK, "lines": look.DARK_LINES},
@@ -121,7 +121,7 @@ def page_record(histories: Sequence[History], labels: Sequence[str], title: str)
     return {
         "title": title,
         "palette": _PALETTE,
-        "models": [model_record(model, _MOST_TRIANGLES // len(models)) for model in models],
+        "models": [model_record(model, _MOST_SHAPE_BYTES // len(models)) for model in models],
         "flights": [
             flight_record(history, label, place, samples)
             for history, label, place in zip(histories, labels, places, strict=True)

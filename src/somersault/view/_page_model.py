@@ -13,7 +13,8 @@ from somersault.model.shapes import Mesh, Shape, coarser
 from somersault.view._meshes import colour_of, of_trunk
 
 _KINDS = {"f4": "<f4", "u2": "<u2", "u4": "<u4"}
-_LEAST = 60  # triangles that each mesh may keep
+_LEAST = 24  # triangles that each mesh may keep
+_BYTES = 40  # of a triangle, or more where edges are sharp
 
 
 def block(values: Array, kind: str = "f4") -> dict[str, str]:
@@ -23,17 +24,25 @@ def block(values: Array, kind: str = "f4") -> dict[str, str]:
 
 
 def model_record(model: Model, most: int) -> dict[str, Any]:
-    """A model by its bodies' names and shapes, with about `most` triangles in its meshes."""
+    """A model by its bodies' names and shapes, whose meshes are made coarser until what they are
+    written in is no longer than `most` bytes."""
     rows = model_shapes(model)
     total = sum(len(shape.faces) for row in rows for shape in row if isinstance(shape, Mesh))
-    share = min(1.0, most / total) if total else 1.0
-    return {
-        "name": model.name,
-        "bodies": [
+    triangles = most // _BYTES
+    while True:
+        share = min(1.0, triangles / total) if total else 1.0
+        bodies = [
             {"name": body.name, "shapes": [_shape(shape, share, trunk) for shape in row]}
             for body, row, trunk in zip(model.bodies, rows, of_trunk(model), strict=True)
-        ],
-    }
+        ]
+        size = sum(_size(shape) for body in bodies for shape in body["shapes"])
+        if size <= most or triangles < len(rows):
+            return {"name": model.name, "bodies": bodies}
+        triangles = int(0.9 * triangles * most / size)
+
+
+def _size(shape: dict[str, Any]) -> int:
+    return sum(len(shape[name]["base64"]) for name in ("vertices", "faces") if name in shape)
 
 
 def _shape(shape: Shape, share: float, trunk: bool) -> dict[str, Any]:

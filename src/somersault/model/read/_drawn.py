@@ -11,7 +11,7 @@ from typing import Any
 
 from somersault._core.errors import SomersaultError
 from somersault.model._strange import Strange
-from somersault.model.read.mesh import MeshFile, mesh_file
+from somersault.model.read.mesh import Contents, MeshFile, mesh_file
 from somersault.model.shapes import Shape
 
 _MOST_SHAPES = 5000
@@ -26,6 +26,7 @@ class Drawn:
         self._strange = strange
         self._beside = beside
         self._shapes: dict[str, list[Shape]] = {}
+        self._files: dict[Path, Contents] = {}
         self._count = 0
         self._bytes = 0
 
@@ -54,7 +55,8 @@ class Drawn:
             self._bytes += place.stat().st_size
             if self._bytes > _MOST_BYTES:
                 raise SomersaultError(f"and those before it are larger than {_MOST_BYTES >> 20} MB")
-            return MeshFile(file=place, named=name[:100], **options)
+            contents = self._files.setdefault(place, Contents(place))
+            return MeshFile(contents=contents, named=name[:100], **options)
         except SomersaultError as error:
             raise SomersaultError(f"{name[:100]} ({error})") from None
 

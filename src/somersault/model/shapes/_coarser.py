@@ -6,11 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from somersault._core.array import Array
 from somersault.model.shapes._mesh import Mesh
 
 
 def coarser(mesh: Mesh, most: int) -> Mesh:
-    """A mesh of at most so many triangles: corners that stand in one cell of a lattice are one."""
+    """A mesh of at most so many triangles: corners that stand in one cell of a lattice are one.
+
+    Of a mesh that is all crumbs, smaller than the cells, the largest triangles are left.
+    """
     if len(mesh.faces) <= most:
         return mesh
     low = mesh.vertices.min(0)
@@ -31,7 +35,16 @@ def coarser(mesh: Mesh, most: int) -> Mesh:
         if len(faces) <= most or cells <= 2:
             break
         cells = max(2, int(cells * min(0.9, np.sqrt(most / len(faces)))))
-    if not len(faces):
-        return mesh
+    if not 0 < len(faces) <= most:
+        return _largest(mesh, most)
     middles = [np.bincount(place, mesh.vertices[:, k]) / count for k in range(3)]
     return replace(mesh, vertices=np.stack(middles, -1), faces=faces)
+
+
+def _largest(mesh: Mesh, most: int) -> Mesh:
+    """Its largest triangles."""
+    one, two, three = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+    areas: Array = np.linalg.norm(np.cross(two - one, three - one), axis=1)
+    faces = mesh.faces[np.sort(np.argsort(areas)[-most:])]
+    kept, place = np.unique(faces, return_inverse=True)
+    return replace(mesh, vertices=mesh.vertices[kept], faces=place.reshape(-1, 3))

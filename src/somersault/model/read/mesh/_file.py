@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -13,10 +14,33 @@ from somersault._core.errors import SomersaultError
 from somersault._core.files import read_bytes
 from somersault.model._vectors import IDENTITY, Matrix, as_matrix
 from somersault.model.read.mesh._formats import parts_of
+from somersault.model.read.mesh._part import Part
 from somersault.model.read.mesh._places import MOST_BYTES
 from somersault.model.shapes import Mesh, Shape, Triangles, coarser
 
 _MOST_TRIANGLES = 200_000  # of one surface: more is made coarser
+
+
+@dataclass(frozen=True)
+class Contents:
+    """What is in a mesh file: read once, however many shapes stand for it."""
+
+    file: Path
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without what was read: models are sent to other processes."""
+        return {"file": self.file}
+
+    @cached_property
+    def parts(self) -> list[Part]:
+        """Its surfaces; SomersaultError, with the reason alone, if it cannot be read."""
+        try:
+            data = read_bytes(self.file, MOST_BYTES + 1)
+        except OSError:
+            raise SomersaultError("cannot be read") from None
+        if len(data) > MOST_BYTES:
+            raise SomersaultError(f"is larger than {MOST_BYTES >> 20} MB")
+        return parts_of(self.file.suffix, data)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,7 +49,7 @@ class MeshFile(Shape):
 
     Parameters
     ----------
-    file : Path
+    contents : Contents
     named : str
         As the model's file names it.
     form : tuple of rows
@@ -34,7 +58,7 @@ class MeshFile(Shape):
         As of any `Shape`. Surfaces that have a colour in the file keep it.
     """
 
-    file: Path
+    contents: Contents
     named: str
     form: Matrix = IDENTITY
     kind: ClassVar[str] = "mesh file"
@@ -73,19 +97,10 @@ class MeshFile(Shape):
                     ),
                     _MOST_TRIANGLES,
                 )
-                for part in parts_of(self.file.suffix, self._contents())
+                for part in self.contents.parts
             ]
         except SomersaultError as error:
             raise SomersaultError(f"{self.named} ({error})") from None
-
-    def _contents(self) -> bytes:
-        try:
-            data = read_bytes(self.file, MOST_BYTES + 1)
-        except OSError:
-            raise SomersaultError("cannot be read") from None
-        if len(data) > MOST_BYTES:
-            raise SomersaultError(f"is larger than {MOST_BYTES >> 20} MB")
-        return data
 
     def _mirrored(self) -> MeshFile:
         return replace(self, form=as_matrix(np.diag([1.0, -1.0, 1.0]) @ np.array(self.form)))
