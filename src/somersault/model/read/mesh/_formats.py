@@ -36,6 +36,8 @@ def parts_of(ending: str, data: bytes) -> list[Part]:
             parts += [part] if len(part.faces) else []
             if sum(len(one.faces) for one in parts) > _MOST_TRIANGLES:
                 raise SomersaultError(f"has more than {_MOST_TRIANGLES} triangles")
+    except SomersaultError:
+        raise
     except (ValueError, IndexError, KeyError, OverflowError, MemoryError, RecursionError):
         raise SomersaultError(f"is no whole mesh of the kind {ending}") from None
     if not parts:

@@ -51,6 +51,8 @@ def mesh_file(name: str, folder: Path, beside: Sequence[Path] = ()) -> Path:
             if os.path.lexists(place):
                 _check(place)
                 return place
+    except SomersaultError:
+        raise
     except (OSError, ValueError):  # a name too long, or with a null character
         pass
     raise SomersaultError("is not there")

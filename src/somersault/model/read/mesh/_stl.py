@@ -11,7 +11,8 @@ from somersault.model.read.mesh._part import Part, numbers
 
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _HEADER = 84  # bytes, of which the last four are the number of triangles
-_VERTEX = re.compile(rb"\bvertex\s+(\S+\s+\S+\s+\S+)", re.IGNORECASE)
+_NUMBER = rb"[-+.\deE]+"
+_VERTEX = re.compile(rb"\bvertex\s+(%b\s+%b\s+%b)" % (3 * (_NUMBER,)), re.IGNORECASE)
 
 
 def parts(data: bytes) -> Iterator[Part]:
