@@ -17,8 +17,9 @@ from somersault.attitude import quaternion_from_matrix
 from somersault.model._bodies import GROUND, Body, Joint
 from somersault.model._model import Model
 from somersault.model._vectors import IDENTITY, ZERO
-from somersault.model.shapes import Mesh, Shape
+from somersault.model.shapes import Mesh, Shape, lighter
 
+_MOST_TRIANGLES = 60_000  # of a file, whose text would be megabytes
 _LEAST = 2e-15  # kg, kg m²: MuJoCo lets nothing move that has less
 
 
@@ -76,12 +77,13 @@ def mjcf(model: Model) -> str:
     plain.attrib |= {"mass": "0", "contype": "0", "conaffinity": "0"}
     assets, world = SubElement(root, "asset"), SubElement(root, "worldbody")
     above = {GROUND: world}
+    shapes = lighter(model.solids, _MOST_TRIANGLES)
     for index, body in enumerate(model.bodies):
         base = model.free and index == 0
         above[index] = _add_body(above[body.parent], body, base)
         if base:
             _add_root(above[index], model)
-        for number, shape in enumerate(model.solids[index]):
+        for number, shape in enumerate(shapes[index]):
             _add_shape(above[index], assets, shape, f"{body.name}.{number}")
     _add_followers(root, model)
     indent(root)

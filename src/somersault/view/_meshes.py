@@ -10,7 +10,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.model import Model, model_shapes
-from somersault.model.shapes import Color, Mesh, Shape, coarser, loft
+from somersault.model.shapes import Color, Mesh, Shape, lighter, loft
 from somersault.view._canvas import Surface
 
 TRUNK, LIMBS = (0.36, 0.53, 0.74), (0.90, 0.69, 0.46)  # of what has no colour of its own
@@ -58,20 +58,17 @@ def figure_of(model: Model, most: int = _MOST_FACES) -> Figure:
     SomersaultError
         For a model of so many triangles that even this would take minutes.
     """
-    shapes = [(body, shape) for body, row in enumerate(model_shapes(model)) for shape in row]
-    sizes = [len(shape.faces) if isinstance(shape, Mesh) else 0 for _, shape in shapes]
-    if sum(sizes) > _MOST_READ:
+    rows = model_shapes(model)
+    count = sum(len(shape.faces) for row in rows for shape in row if isinstance(shape, Mesh))
+    if count > _MOST_READ:
         raise SomersaultError(
-            f"{model.name} has meshes of {sum(sizes)} triangles, too many to draw; give meshes of "
+            f"{model.name} has meshes of {count} triangles, too many to draw; give meshes of "
             f"at most {_MOST_READ} in all"
         )
-    share = most / max(sum(sizes), most)
     bodies, points, normals, faces, paints = [], [], [], [], []
     start = 0
     trunk = of_trunk(model)
-    for (body, shape), size in zip(shapes, sizes, strict=True):
-        if share < 1 and isinstance(shape, Mesh):
-            shape = coarser(shape, max(200, int(share * size)))
+    for body, shape in ((k, shape) for k, row in enumerate(lighter(rows, most)) for shape in row):
         surface = shape.triangles
         bodies.append(np.full(len(surface.vertices), body))
         points.append(surface.vertices)

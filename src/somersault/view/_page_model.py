@@ -9,7 +9,7 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault.model import Model, model_shapes
-from somersault.model.shapes import Mesh, Shape, coarser
+from somersault.model.shapes import Mesh, Shape, lighter
 from somersault.view._meshes import colour_of, of_trunk
 
 _KINDS = {"f4": "<f4", "u2": "<u2", "u4": "<u4"}
@@ -27,13 +27,12 @@ def model_record(model: Model, most: int) -> dict[str, Any]:
     """A model by its bodies' names and shapes, whose meshes are made coarser until what they are
     written in is no longer than `most` bytes."""
     rows = model_shapes(model)
-    total = sum(len(shape.faces) for row in rows for shape in row if isinstance(shape, Mesh))
     triangles = most // _BYTES
     while True:
-        share = min(1.0, triangles / total) if total else 1.0
-        bodies = [
-            {"name": body.name, "shapes": [_shape(shape, share, trunk) for shape in row]}
-            for body, row, trunk in zip(model.bodies, rows, of_trunk(model), strict=True)
+        few = lighter(rows, triangles, _LEAST)
+        bodies: list[dict[str, Any]] = [
+            {"name": body.name, "shapes": [_shape(shape, trunk) for shape in row]}
+            for body, row, trunk in zip(model.bodies, few, of_trunk(model), strict=True)
         ]
         size = sum(_size(shape) for body in bodies for shape in body["shapes"])
         if size <= most or triangles < len(rows):
@@ -45,12 +44,11 @@ def _size(shape: dict[str, Any]) -> int:
     return sum(len(shape[name]["base64"]) for name in ("vertices", "faces") if name in shape)
 
 
-def _shape(shape: Shape, share: float, trunk: bool) -> dict[str, Any]:
+def _shape(shape: Shape, trunk: bool) -> dict[str, Any]:
     opacity = 1.0 if shape.color is None else shape.color[3]
     color = [*colour_of(shape.color, trunk), opacity]
     if isinstance(shape, Mesh):
-        few = coarser(shape, max(_LEAST, int(share * len(shape.faces))))
-        return {**_mesh(few), "color": color}
+        return {**_mesh(shape), "color": color}
     return {
         "kind": shape.kind,
         "sizes": list(shape.sizes),

@@ -1,7 +1,7 @@
 """What bodies look like: shapes that a picture, a film or a page draws, and that decide nothing."""
 
 from somersault.model.shapes._box import Box
-from somersault.model.shapes._coarser import coarser
+from somersault.model.shapes._coarser import coarser, lighter
 from somersault.model.shapes._mesh import Mesh, loft
 from somersault.model.shapes._round import Capsule, Cylinder, Ellipsoid, Sphere
 from somersault.model.shapes._shape import Color, Hull, Shape, Triangles
@@ -18,5 +18,6 @@ __all__ = [
     "Sphere",
     "Triangles",
     "coarser",
+    "lighter",
     "loft",
 ]

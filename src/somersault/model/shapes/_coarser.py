@@ -2,12 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from somersault._core.array import Array
 from somersault.model.shapes._mesh import Mesh
+from somersault.model.shapes._shape import Shape
+
+_LEAST = 200  # triangles that a mesh may keep, however many there are of others
+
+
+def lighter(rows: Sequence[Sequence[Shape]], most: int, least: int = _LEAST) -> list[list[Shape]]:
+    """Rows of shapes with about so many triangles at most in all meshes, each coarser by as much;
+    `least` triangles each may keep."""
+    total = sum(len(shape.faces) for row in rows for shape in row if isinstance(shape, Mesh))
+    share = min(1.0, most / total) if total else 1.0
+    return [
+        [
+            coarser(shape, max(least, int(share * len(shape.faces))))
+            if isinstance(shape, Mesh)
+            else shape
+            for shape in row
+        ]
+        for row in rows
+    ]
 
 
 def coarser(mesh: Mesh, most: int) -> Mesh:
