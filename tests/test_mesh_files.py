@@ -8,6 +8,7 @@ import lzma
 import os
 import pickle
 import re
+import tracemalloc
 import warnings
 import zipfile
 import zlib
@@ -427,6 +428,16 @@ def test_a_hostile_mesh_is_refused_in_a_sentence(name: str, tmp_path: Path) -> N
     path = stored(tmp_path, data, "a" + ending)
     with pytest.raises(so.SomersaultError, match=reason):
         MeshFile(contents=Contents(path), named="a").solids()
+
+
+def test_a_bomb_is_not_unpacked() -> None:
+    data = bomb(1, 2**28, 64)
+    tracemalloc.start()
+    with pytest.raises(so.SomersaultError):
+        parts_of(".vtp", data)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 2**25
 
 
 def test_a_shape_scaled_to_nothing_is_refused(tmp_path: Path) -> None:
