@@ -15,10 +15,12 @@ last two of matrices) holds the components, those before it are carried along.
 """
 
 from somersault.attitude._angles import (
+    SINGULAR,
     angle_rates,
     angles_from_matrix,
     angles_from_quaternion,
     body_rates,
+    cayley_klein,
     direction_cosines,
     quaternion_from_angles,
     unwrapped_angles,
@@ -33,12 +35,14 @@ from somersault.attitude._quaternions import (
 
 __all__ = [
     "AXES",
+    "SINGULAR",
     "Axes",
     "angle_rates",
     "angles_from_matrix",
     "angles_from_quaternion",
     "as_axes",
     "body_rates",
+    "cayley_klein",
     "direction_cosines",
     "from_sequence",
     "in_sequence",

@@ -11,7 +11,8 @@ from somersault._core.numbers import floats, require_together, together
 from somersault.attitude._axes import AXES, Axes, from_sequence, in_sequence, side
 from somersault.attitude._quaternions import quaternion_from_matrix, stacked
 
-_SINGULAR = 1e-15  # cos Θ below which somersault and twist are told apart by convention
+SINGULAR = 1e-8  # cos Θ below which turns are not followed along a path
+_ROUNDING = 1e-15  # cos Θ below which an attitude's somersault and twist cannot be told apart
 
 
 def direction_cosines(somersault: ArrayLike, tilt: ArrayLike, twist: ArrayLike) -> Array:
@@ -202,14 +203,47 @@ def angle_rates(angles: ArrayLike, omega: ArrayLike, axes: Axes = AXES) -> Array
     return _signed(rates, axes)
 
 
-def unwrapped_angles(quaternions: ArrayLike, axes: Axes = AXES) -> Array:
+def cayley_klein(quaternion: ArrayLike, axes: Axes = AXES) -> tuple[Array, Array]:
+    """The Cayley–Klein parameters of attitudes about their axis of tilt.
+
+    Parameters
+    ----------
+    quaternion : array_like, shape (..., 4)
+        Scalar first, body to inertial.
+    axes : tuple of int
+        The body axes that the angles are about.
+
+    Returns
+    -------
+    numpy.ndarray, shape (...), complex
+        At the angle (Φ − Ψ)/2, and as long as cos Θ/2 + sin Θ/2.
+    numpy.ndarray, shape (...), complex
+        At the angle (Φ + Ψ)/2, and as long as cos Θ/2 − sin Θ/2; where Φ is about an axis at the
+        right, −Φ is meant.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from somersault.attitude import cayley_klein, quaternion_from_angles
+    >>> up, down = cayley_klein(quaternion_from_angles(0.3, 1.0, 0.1))
+    >>> np.angle([up, down]).round(6).tolist()
+    [0.1, 0.2]
+    """
+    w, *vector = np.moveaxis(floats("quaternion", quaternion, 4), -1, 0)
+    x, y, z = in_sequence(vector, axes)
+    return (w + x) + 1j * (y - z), (w - x) + 1j * (y + z)
+
+
+def unwrapped_angles(
+    quaternions: ArrayLike, axes: Axes = AXES, start: ArrayLike | None = None
+) -> Array:
     """Somersault, tilt and twist along paths of attitudes, through any number of turns.
 
     Every attitude is (Φ, Θ, Ψ) and also (Φ + π, π − Θ, Ψ + π), each plus whole turns. The
     first sample has Θ in [−π/2, π/2]; each further one is the representation nearest the
     sample before it. So tilt runs on through ±π/2, and a body that tilts head over heels has
-    Φ and Ψ at rest. A sample at Θ = ±π/2 itself keeps the sum or difference of Φ and Ψ that
-    is free there from its neighbour.
+    Φ and Ψ at rest. At Θ = ±π/2, and within 1e-8 rad of it, a sample keeps the sum or difference
+    of Φ and Ψ that is free there from its neighbour: a body that stays there turns by the other.
 
     Samples must be less than a quarter turn apart and, where a path goes by the singularity,
     closer than it: one that goes by between two samples is taken to go through, which is the
@@ -221,6 +255,8 @@ def unwrapped_angles(quaternions: ArrayLike, axes: Axes = AXES) -> Array:
         Scalar first, body to inertial.
     axes : tuple of int
         The body axes that the angles are about.
+    start : array_like, shape (..., 3), optional
+        The angles of the first sample, to have what is free there if it is at Θ = ±π/2.
 
     Returns
     -------
@@ -245,9 +281,13 @@ def unwrapped_angles(quaternions: ArrayLike, axes: Axes = AXES) -> Array:
         raise SomersaultError("A path is a row of attitudes, (time, 4), and this is one alone.")
     if not np.all(np.isfinite(q)):
         raise SomersaultError("Attitudes along a path must be finite; remove the others first.")
-    half_sum, half_difference, tilt, free = _halves(q, axes)
-    half_sum = _kept(half_sum, free & (tilt > 0))
-    half_difference = _kept(half_difference, free & (tilt < 0))
+    half_sum, half_difference, tilt, free = _halves(q, axes, SINGULAR)
+    of_sum, of_difference = None, None
+    if start is not None:
+        somersault, _, twist = np.moveaxis(_signed(floats("start", start, 3), axes), -1, 0)
+        of_sum, of_difference = (somersault + twist) / 2, (somersault - twist) / 2
+    half_sum = _kept(half_sum, free & (tilt > 0), of_sum)
+    half_difference = _kept(half_difference, free & (tilt < 0), of_difference)
     angles = _from_halves(half_sum, half_difference, tilt)
     step = np.diff(angles, axis=-2)
     other = step + np.pi
@@ -279,18 +319,19 @@ def _signed(angles: Array, axes: Axes) -> Array:
     return angles * [side(axes), 1, 1]
 
 
-def _halves(q: Array, axes: Axes) -> tuple[Array, Array, Array, Array]:
+def _halves(
+    q: Array, axes: Axes, singular: float = _ROUNDING
+) -> tuple[Array, Array, Array, Array]:
     """(Φ + Ψ)/2, (Φ − Ψ)/2, Θ of attitudes `in_sequence`, and whether a half is free (Θ = ±π/2).
 
     From w ± x and y ∓ z, which are the cosine and sine of (Φ ∓ Ψ)/2 times cos Θ/2 ± sin Θ/2:
     no digits are lost near the singularity. A free half is that of no twist.
     """
-    w, *vector = np.moveaxis(q, -1, 0)
-    x, y, z = in_sequence(vector, axes)
-    plus, minus = np.hypot(w + x, y - z), np.hypot(w - x, y + z)
+    up, down = cayley_klein(q, axes)
+    plus, minus = np.abs(up), np.abs(down)
     tilt = 2 * np.arctan2(plus - minus, plus + minus)
-    free = np.minimum(plus, minus) <= _SINGULAR * np.maximum(plus, minus)
-    half_sum, half_difference = np.arctan2(y + z, w - x), np.arctan2(y - z, w + x)
+    free = np.minimum(plus, minus) <= singular / 2 * np.maximum(plus, minus)
+    half_sum, half_difference = np.angle(down), np.angle(up)
     return (
         np.where(free & (tilt > 0), half_difference, half_sum),
         np.where(free & (tilt < 0), half_sum, half_difference),
@@ -304,12 +345,17 @@ def _from_halves(half_sum: Array, half_difference: Array, tilt: Array) -> Array:
     return np.stack([turns[..., 0], tilt, turns[..., 1]], -1)
 
 
-def _kept(values: Array, missing: Array) -> Array:
-    """Values (…, time) with missing ones copied from before them, or at the start from after."""
+def _kept(values: Array, missing: Array, start: Array | None) -> Array:
+    """Values (…, time) with missing ones copied from before them; at the start they are those
+    given, or copied from after, or all the first one."""
     if not missing.any():
         return values
+    if start is not None:
+        first = np.where(missing[..., 0], start, values[..., 0])
+        values = np.concatenate([first[..., None], values[..., 1:]], -1)
+        missing = np.concatenate([np.zeros_like(missing[..., :1]), missing[..., 1:]], -1)
     steps = np.arange(values.shape[-1])
     before = np.maximum.accumulate(np.where(missing, -1, steps), -1)
     after = np.minimum.accumulate(np.where(missing, len(steps), steps)[..., ::-1], -1)[..., ::-1]
-    source = np.where(before < 0, np.where(after < len(steps), after, steps), before)
+    source = np.where(before < 0, np.where(after < len(steps), after, 0), before)
     return np.take_along_axis(values, source, -1)

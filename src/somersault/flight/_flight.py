@@ -105,7 +105,7 @@ class Flight(Filmed):
     @cached_property
     def _angles(self) -> Array:
         """Somersault, tilt, twist at every point, unwrapped, (points, 3)."""
-        path = unwrapped_angles(self._states[:, :4], self.model.axes)
+        path = unwrapped_angles(self._states[:, :4], self.model.axes, self.start.angles)
         return _from(path, self.start.angles)
 
     @property

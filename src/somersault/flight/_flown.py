@@ -5,20 +5,21 @@ from __future__ import annotations
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.attitude import Axes, angles_from_quaternion
+from somersault.attitude import SINGULAR, Axes, angles_from_quaternion, cayley_klein
 from somersault.engine import STATUS
 from somersault.flight._batch import Batch, Begun
 from somersault.flight._flight import Flight
 from somersault.flight._plane import turning
 from somersault.flight._start import Start
 from somersault.flight._system import System
+from somersault.flight._watch import NEAREST
 
 _STEPS_A_POINT = 20  # more, for each point that samples or turns need
 _FINEST_TURN = 0.6  # rad between the points that turns are counted on
 _MOST_POINTS = 5_000_000
 _MOST_REFINEMENTS = 24
 _MOST_PARTS = 16  # of a gap at once
-_CLOSEST = 1e-6  # cos Θ: a path nearer the singularity than this is taken to go through
+_A_HALF_TURNS = 1.0  # rad, from point to point, at most
 
 
 def flown(
@@ -74,8 +75,10 @@ def _divided(points: Array, parts: Array) -> Array:
 def _needed(states: Array, axes: Axes) -> Array:
     """Into how many parts each gap must be divided for its turns to be counted rightly.
 
-    Near tilt ±π/2 somersault and twist run as fast as the body turns over cos Θ, so it must
-    turn by less than half of cos Θ from point to point: then no pole lies between.
+    Towards tilt ±π/2 somersault and twist run as fast as the body turns over cos Θ, so it must
+    turn by less than half of cos Θ from point to point: then no pole lies between. Where that is
+    next to nothing it is enough that the half of the angles that runs off is followed; a path that
+    comes nearer than `SINGULAR` goes through.
     """
     q = states[:, :4] / np.linalg.norm(states[:, :4], axis=1, keepdims=True)
     # The distance of unit quaternions keeps its digits where their product would not.
@@ -84,5 +87,15 @@ def _needed(states: Array, axes: Axes) -> Array:
     )
     turn = 4 * np.arcsin(np.minimum(apart / 2, 1.0))
     upright = np.abs(np.cos(angles_from_quaternion(q, axes)[:, 1]))
-    near = np.maximum(np.minimum(upright[1:], upright[:-1]), _CLOSEST)
-    return np.clip(np.ceil(2 * turn / near), 1, _MOST_PARTS).astype(int)
+    near = np.minimum(upright[1:], upright[:-1])
+    parts = np.clip(np.ceil(2 * turn / np.maximum(near, NEAREST)), 1, _MOST_PARTS).astype(int)
+    followed = (near > NEAREST) | (near < SINGULAR) | (_half_turns(q, axes) < _A_HALF_TURNS)
+    return np.where(followed, parts, _MOST_PARTS)
+
+
+def _half_turns(q: Array, axes: Axes) -> Array:
+    """The angle by which the half of somersault and twist that runs off turns in each gap."""
+    up, down = cayley_klein(q, axes)
+    short = np.where(np.abs(down[1:]) < np.abs(up[1:]), [down[:-1], down[1:]], [up[:-1], up[1:]])
+    same = np.sign(np.einsum("ti,ti->t", q[1:], q[:-1]))  # q and −q are one attitude
+    return np.abs(np.angle(same * short[1] * short[0].conj()))

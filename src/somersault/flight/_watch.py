@@ -1,9 +1,10 @@
 """What is kept account of while a flight goes on: its turns, and how far it strays.
 
 Turns are counted as `attitude.unwrapped_angles` counts them, from one step of the integration
-to the next, each short enough that none is missed unless a path goes by the singularity (tilt
-±π/2) within some hundredths of a radian: that close one may be counted on the other side, which
-is the same attitude. Extremes are those of the cubic that has the
+to the next. Near the singularity (tilt ±π/2) steps are short, and on which side of it a path goes
+by is read from the cubic that has the attitudes and their rates at both ends of a step. Nearer than
+`SINGULAR` there is no side: a path that comes so near goes through, and one that stays there keeps
+the half of the angles that has no meaning. Extremes are those of the cubic that has the
 values and the rates at both ends of a step; the steps resolve the fastest motion, so they
 are good to some thousandths of the swing.
 """
@@ -16,13 +17,14 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from somersault.attitude import Axes, in_sequence, side
+from somersault.attitude import SINGULAR, Axes, in_sequence, side
 
 ANGLES = ("somersault", "tilt", "twist")
 RATES = tuple(f"{name}_rate" for name in ANGLES)
 VELOCITIES = tuple(f"angular_velocity_{k}" for k in (1, 2, 3))
 _LONGEST = 1.0  # rad that a body turns in a step, and less near the singularity of the angles
-_NEAREST = 0.02
+NEAREST = 0.02  # cos Θ: no nearer to it are steps shorter still
+_PAST = 3 * np.pi / 4  # rad: a half of the angles turns by π/2 to π in a step that passes it by
 
 Quantities = Callable[[Any, Any, Any], dict[str, Any]]
 
@@ -36,7 +38,7 @@ def longest(quaternion: list[Any], omega: list[Any], axes: Axes) -> Any:
     """The longest step (s) from a state: to less than where somersault and twist run off."""
     upright = ca.sqrt(ca.fmax(1 - _sine_of_tilt(quaternion, axes) ** 2, 0))
     rate = ca.sqrt(sum(w * w for w in omega) + 1e-300)
-    return ca.fmin(ca.fmax(upright, _NEAREST), 1.0) * _LONGEST / rate
+    return ca.fmin(ca.fmax(upright, NEAREST), 1.0) * _LONGEST / rate
 
 
 def watch(
@@ -47,7 +49,9 @@ def watch(
     t0, t1 = ca.SX.sym("t0"), ca.SX.sym("t1")
     p, before = ca.SX.sym("p", parameters), ca.SX.sym("w", 3 + 2 * len(extremes))
     angles = [before[k] for k in range(3)]
-    after = _followed(angles, [y1[k] for k in range(4)], axes)
+    ends = [[y[k] for k in range(4)] for y in (y0, y1)]
+    slopes = [[(t1 - t0) * f[k] for k in range(4)] for f in (f0, f1)]
+    after = _followed(angles, ends, slopes, axes)
     rows = list(after)
     if extremes:
         g0, rate0 = _with_rates(extremes, quantities, angles, y0, f0, t0, p, axes)
@@ -79,20 +83,64 @@ def _renamed(quaternion: list[Any], axes: Axes) -> list[Any]:
     return [quaternion[0], *in_sequence(quaternion[1:], axes)]
 
 
-def _followed(angles: list[Any], quaternion: list[Any], axes: Axes) -> list[Any]:
-    """Somersault, tilt and twist of an attitude, in the representation nearest to `angles`."""
-    w, x, y, z = _renamed(quaternion, axes)
-    half_sum, half_difference = ca.atan2(y + z, w - x), ca.atan2(y - z, w + x)
-    plus = ca.sqrt((w + x) ** 2 + (y - z) ** 2)
-    minus = ca.sqrt((w - x) ** 2 + (y + z) ** 2)
+def _followed(
+    angles: list[Any], ends: list[list[Any]], slopes: list[list[Any]], axes: Axes
+) -> list[Any]:
+    """Somersault, tilt and twist at the end of a step, in the representation nearest to where
+    `angles`, those before it, are carried; slopes are those of the ends, times the step."""
+    (start, start_down), (end, end_down) = (_spun(quaternion, axes) for quaternion in ends)
+    (leaving, leaving_down), (arriving, arriving_down) = (_spun(slope, axes) for slope in slopes)
+    half_sum, half_difference = ca.atan2(end_down[1], end_down[0]), ca.atan2(end[1], end[0])
+    plus = ca.sqrt(end[0] ** 2 + end[1] ** 2)
+    minus = ca.sqrt(end_down[0] ** 2 + end_down[1] ** 2)
     tilt = 2 * ca.atan2(plus - minus, plus + minus)
+    # Half the sum is free at tilt π/2, half the difference at −π/2: there each stays as it was.
+    sum_was, difference_was = ((side(axes) * angles[0] + k * angles[2]) / 2 for k in (1, -1))
+    half_sum = _chosen(2 * minus < SINGULAR * plus, sum_was, half_sum)
+    half_difference = _chosen(2 * plus < SINGULAR * minus, difference_was, half_difference)
     here = [side(axes) * (half_sum + half_difference), tilt, half_sum - half_difference]
     there = [here[0] + np.pi, np.pi - tilt, here[2] + np.pi]
-    by = [_wrapped(a - b) for a, b in zip(here, angles, strict=True)]
-    other = [_wrapped(a - b) for a, b in zip(there, angles, strict=True)]
+    up = minus < plus
+    short = [
+        _chosen(up, down, other)
+        for down, other in (
+            (start_down, start), (end_down, end), (leaving_down, leaving),
+            (arriving_down, arriving),
+        )
+    ]  # fmt: skip
+    past = _PAST * _sense_past(*short)
+    carried = [angles[0] + side(axes) * past, angles[1], angles[2] + (2 * up - 1) * past]
+    by = [_wrapped(a - b) for a, b in zip(here, carried, strict=True)]
+    other = [_wrapped(a - b) for a, b in zip(there, carried, strict=True)]
     crosses = sum(d * d for d in other) < sum(d * d for d in by)
     # Not `if_else`: it multiplies, and a number that is not finite would spread.
-    return [a + one + crosses * (two - one) for a, one, two in zip(angles, by, other, strict=True)]
+    return [a + one + crosses * (two - one) for a, one, two in zip(carried, by, other, strict=True)]
+
+
+def _spun(quaternion: list[Any], axes: Axes) -> tuple[Any, Any]:
+    """Two vectors, linear in the quaternion, that stand at the angles (Φ − Ψ)/2 and (Φ + Ψ)/2 and
+    are as long as cos Θ/2 ± sin Θ/2."""
+    w, x, y, z = _renamed(quaternion, axes)
+    return ca.vertcat(w + x, y - z), ca.vertcat(w - x, y + z)
+
+
+def _sense_past(start: Any, end: Any, leaving: Any, arriving: Any) -> Any:
+    """The sense, ±1, in which a vector turns on its way past zero: 0 if it turns by less than π/2
+    or goes through."""
+    across = end - start
+    length = ca.dot(across, across) + 1e-300
+    s = -ca.dot(across, start) / length
+    # The cubic where the chord is nearest to zero, which is within the step if it passes zero.
+    bend = s * (1 - s) * ((1 - s) * (leaving - across) - s * (arriving - across))
+    nearest = start + bend
+    beside = nearest[0] * across[1] - nearest[1] * across[0]
+    passes = (ca.dot(start, end) < 0) * (SINGULAR**2 * length < 2 * beside * beside)
+    return passes * (1 - 2 * (beside < 0))
+
+
+def _chosen(condition: Any, one: Any, other: Any) -> Any:
+    """One or another, both of them finite."""
+    return other + condition * (one - other)
 
 
 def _wrapped(angle: Any) -> Any:
@@ -105,7 +153,10 @@ def _named(
     _, tilt, twist = angles
     known = quantities(y, t, p)
     w1, w2, w3 = in_sequence([known[name] for name in VELOCITIES], axes)
-    somersaulting = (ca.sin(twist) * w1 + ca.cos(twist) * w2) / ca.cos(tilt)  # eq. 2.3
+    singular = ca.fabs(ca.cos(tilt)) < SINGULAR
+    somersaulting = (ca.sin(twist) * w1 + ca.cos(twist) * w2) / (ca.cos(tilt) + singular)  # eq. 2.3
+    # At the singularity the half of the angles that is free there is kept (`_followed`).
+    somersaulting = _chosen(singular, -ca.sin(tilt) * w3 / 2, somersaulting)
     tilting = ca.cos(twist) * w1 - ca.sin(twist) * w2
     rates = [side(axes) * somersaulting, tilting, w3 + ca.sin(tilt) * somersaulting]
     return {
