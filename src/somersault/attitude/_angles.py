@@ -319,9 +319,7 @@ def _signed(angles: Array, axes: Axes) -> Array:
     return angles * [side(axes), 1, 1]
 
 
-def _halves(
-    q: Array, axes: Axes, singular: float = _ROUNDING
-) -> tuple[Array, Array, Array, Array]:
+def _halves(q: Array, axes: Axes, singular: float = _ROUNDING) -> tuple[Array, Array, Array, Array]:
     """(Φ + Ψ)/2, (Φ − Ψ)/2, Θ of attitudes `in_sequence`, and whether a half is free (Θ = ±π/2).
 
     From w ± x and y ∓ z, which are the cosine and sine of (Φ ∓ Ψ)/2 times cos Θ/2 ± sin Θ/2:

@@ -3,8 +3,6 @@ mean what they mean there."""
 
 from __future__ import annotations
 
-import os
-import re
 import warnings
 from dataclasses import replace
 from pathlib import Path
@@ -19,6 +17,7 @@ from somersault.model._bodies import GROUND, Body, Follow, Joint
 from somersault.model._model import Model
 from somersault.model._strange import listed
 from somersault.model._vectors import Matrix, Vector
+from somersault.model.read._apart import compiled_model
 from somersault.model.read._follow import leaders
 from somersault.model.read._mujoco_shapes import body_shapes
 from somersault.model.read._xml import MOST_BYTES
@@ -38,25 +37,14 @@ def read_mjcf(path: Path, base: Base | None = None) -> Model:
     SomersaultError
         If the file has no model, or none that can fly.
     """
-    import mujoco
-
     if path.stat().st_size > MOST_BYTES:
         raise SomersaultError(
             f"{path.name} is larger than 50 MB, which no model is; check the file"
         )
-    mujoco.set_mju_user_warning(lambda _: None)  # else it writes a log where one stands
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # what MuJoCo will do otherwise one day
-            spec = mujoco.MjSpec.from_file(os.fsencode(path))  # a name may be no text
-            compiled = spec.compile()
-    except (ValueError, RuntimeError, OSError, AttributeError, mujoco.FatalError) as error:
-        raise SomersaultError(
-            f"{path.name} cannot be read as a model: {_one_line(error)}; correct the file"
-        ) from None
+    compiled, from_shapes = compiled_model(path)
     try:
         _refuse(path.name, compiled)
-        bodies, free = _bodies(path.name, compiled, _from_shapes(spec))
+        bodies, free = _bodies(path.name, compiled, from_shapes)
         left_out = _left_out(compiled)
         dry = [_joint_name(compiled, j) for j in range(compiled.njnt) if _has_friction(compiled, j)]
     except UnicodeDecodeError:
@@ -79,22 +67,6 @@ def read_mjcf(path: Path, base: Base | None = None) -> Model:
     if any(joint.damping for joint in on.let_go):
         left_out.append("the dampings of the root")
     return Model(path.stem, on.free, on.bodies, tuple(left_out), on.axes, on.plane)
-
-
-_PLAINER = {
-    "mass and inertia of moving bodies must be larger than mjMINVAL": "a body that moves has a "
-    "mass or an inertia that is zero, negative or not a number",
-    "inertia must satisfy A + B >= C; use 'balanceinertia' to fix": "a body has a principal "
-    "inertia that is larger than the sum of the other two, or not a number",
-}
-
-
-def _one_line(error: Exception) -> str:
-    text = re.sub(r"\s+", " ", str(error)).strip().rstrip(".")
-    for theirs, ours in _PLAINER.items():
-        text = text.replace(theirs, ours)
-    text = re.sub(r"^(XML )?[Ee]rror:\s*", "", text)
-    return text[:300] if text else type(error).__name__
 
 
 # ------------------------------------------------------------------------------- bodies
@@ -133,19 +105,6 @@ def _bodies(file: str, m: Any, from_shapes: list[bool]) -> tuple[list[Body], boo
         for b in order
     ]
     return bodies, bool(bases)
-
-
-def _from_shapes(spec: Any) -> list[bool]:
-    """Of each body, in the order of their numbers, whether its inertia is made from its geoms."""
-    import mujoco
-
-    way = spec.compiler.inertiafromgeom
-    always = way == mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE
-    never = way == mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
-    bodies = sorted(spec.bodies, key=lambda body: body.id)
-    return [
-        len(body.geoms) > 0 and (always or not (never or body.explicitinertial)) for body in bodies
-    ]
 
 
 def _body(m: Any, b: int, parent: int, base: bool, follows: dict[str, Follow]) -> Body:
