@@ -326,10 +326,10 @@ def _halves(q: Array, axes: Axes, singular: float = _ROUNDING) -> tuple[Array, A
     no digits are lost near the singularity. A free half is that of no twist.
     """
     up, down = cayley_klein(q, axes)
-    plus, minus = np.abs(up), np.abs(down)
+    plus, minus = np.hypot(up.real, up.imag), np.hypot(down.real, down.imag)
     tilt = 2 * np.arctan2(plus - minus, plus + minus)
     free = np.minimum(plus, minus) <= singular / 2 * np.maximum(plus, minus)
-    half_sum, half_difference = np.angle(down), np.angle(up)
+    half_sum, half_difference = np.arctan2(down.imag, down.real), np.arctan2(up.imag, up.real)
     return (
         np.where(free & (tilt > 0), half_difference, half_sum),
         np.where(free & (tilt < 0), half_sum, half_difference),

@@ -20,7 +20,8 @@ from somersault.dynamics._tree import Tree, link_tree
 from somersault.dynamics.vectors import Vec, scale
 from somersault.model import Model, common_name, mirror_pairs
 
-MOST_JOINTS = 3  # beyond this nobody reads a page of LaTeX
+MOST_JOINTS = 3  # beyond this nobody reads a page of LaTeX,
+_MOST_OPERATIONS = 40_000  # nor where an entry of it is multiplied out of so many
 
 
 def c_code(model: Model) -> str:
@@ -79,11 +80,16 @@ def latex(model: Model) -> str:
     """
     joints = len(instance("model", model, Model).joints)
     if joints > MOST_JOINTS or any(joint.kind == "ball" for joint in model.joints):
-        raise SomersaultError(
-            f"the LaTeX of {model.name} would fill pages ({joints} joints); models of up to "
-            f"{MOST_JOINTS} hinges and slides can be printed so, others with --c"
-        )
+        raise _too_long(model)
     return _Page(model).text()
+
+
+def _too_long(model: Model) -> SomersaultError:
+    return SomersaultError(
+        f"the LaTeX of {model.name} would fill pages ({len(model.joints)} joints); models of up to "
+        f"{MOST_JOINTS} hinges and slides, if they move in a plane or nearly, can be printed so, "
+        "others with --c"
+    )
 
 
 class _Page:
@@ -246,6 +252,7 @@ class _Page:
         letters = [self._letters[symbol.name()] for symbol in inputs]
         result = sp.zeros(*matrix.shape)
         slots: dict[int, Any] = {}
+        counts: dict[int, int] = {}  # of operations, were each written wherever it is used
         operations = {
             ca.OP_ADD: lambda a, b: a + b,
             ca.OP_SUB: lambda a, b: a - b,
@@ -261,6 +268,8 @@ class _Page:
         for k in range(f.n_instructions()):
             operation = f.instruction_id(k)
             ins, outs = f.instruction_input(k), f.instruction_output(k)
+            if operation in (ca.OP_INPUT, ca.OP_CONST):
+                counts[outs[0]] = 0
             if operation == ca.OP_INPUT:
                 slots[outs[0]] = letters[ins[0]]
             elif operation == ca.OP_CONST:
@@ -268,7 +277,10 @@ class _Page:
             elif operation == ca.OP_OUTPUT:
                 row, column = outs[1] % matrix.shape[0], outs[1] // matrix.shape[0]
                 result[row, column] = slots[ins[0]]
+                if counts.get(ins[0], 0) > _MOST_OPERATIONS:
+                    raise _too_long(self._model)
             else:
+                counts[outs[0]] = 1 + sum(counts.get(i, 0) for i in ins)
                 slots[outs[0]] = operations[operation](*[slots[i] for i in ins])
         return result
 

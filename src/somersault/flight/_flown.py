@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.errors import SomersaultError
 from somersault.attitude import SINGULAR, Axes, angles_from_quaternion, cayley_klein
 from somersault.engine import STATUS
 from somersault.flight._batch import Batch, Begun
@@ -16,7 +17,7 @@ from somersault.flight._watch import NEAREST
 
 _STEPS_A_POINT = 20  # more, for each point that samples or turns need
 _FINEST_TURN = 0.6  # rad between the points that turns are counted on
-_MOST_POINTS = 5_000_000
+_MOST_BYTES = 2**30  # of one flight
 _MOST_REFINEMENTS = 24
 _MOST_PARTS = 16  # of a gap at once
 _A_HALF_TURNS = 1.0  # rad, from point to point, at most
@@ -31,7 +32,8 @@ def flown(
     It is solved on points that are close enough to count turns on, if need be again on closer ones.
     """
     begun, duration = begun or batch.begun(), batch.duration
-    points = _first_points(batch.system, begun.start, np.union1d(times, [0.0, duration]))
+    most = _MOST_BYTES // _point_bytes(batch)
+    points = _first_points(batch.system, begun.start, np.union1d(times, [0.0, duration]), most)
     for _ in range(_MOST_REFINEMENTS):
         solution = begun.solve(points, accuracy, steps + _STEPS_A_POINT * len(points))
         end, status = float(solution.end[0]), float(solution.status[0])
@@ -39,7 +41,7 @@ def flown(
         states = np.concatenate([solution.states[0][before], solution.final])
         moments = np.append(points[before], end)
         parts = _needed(states, batch.model.axes)
-        if np.all(parts <= 1) or len(points) + parts.sum() > _MOST_POINTS:
+        if np.all(parts <= 1) or len(points) + parts.sum() > most:
             break
         points = np.union1d(_divided(moments, parts), points)
     kept = np.isin(points[before], times)
@@ -54,15 +56,32 @@ def flown(
     )  # fmt: skip
 
 
-def _first_points(chosen: System, begun: Start, points: Array) -> Array:
-    """The points with more between them where the body turns far, by its rate at takeoff."""
+def _point_bytes(batch: Batch) -> int:
+    """Of memory, for a point of a flight and all that is read from it: some copies of the state,
+    the parameters and the joints, and what there is of the whole body."""
+    layout, model = batch.system.layout, batch.model
+    joints = len(model.coordinates) + len(model.speeds)
+    return 8 * (40 + 4 * (layout.state + layout.parameters + joints))
+
+
+def _first_points(chosen: System, begun: Start, points: Array, most: int) -> Array:
+    """The points with more between them where the body turns far, by its rate at takeoff.
+
+    SomersaultError for more than `most`, before there are any.
+    """
     ways = turning(chosen.model)
     least = np.linalg.eigvalsh(chosen.equations.inertia(begun.q)[np.ix_(ways, ways)])[0]
     fastest = np.linalg.norm(begun.momentum) / least + np.abs(begun.u).sum()
-    parts = np.ceil(np.diff(points) * fastest / _FINEST_TURN)
-    return np.append(
-        _divided(points, np.clip(parts, 1, _MOST_POINTS // len(points)).astype(int)), points[-1]
-    )
+    parts = np.maximum(np.ceil(np.diff(points) * fastest / _FINEST_TURN), 1)
+    if not parts.sum() < most:
+        turn = fastest * (points[-1] - points[0]) / (2 * np.pi)
+        raise SomersaultError(
+            f"{chosen.model.name} would turn {turn:.2g} times in {points[-1]:g} s, and keep "
+            f"{len(points)} samples, where {most} moments fit into the "
+            f"{_MOST_BYTES / 2**30:g} GB that a flight may take; make it shorter, slower or more "
+            "sparsely sampled"
+        )
+    return np.append(_divided(points, parts.astype(int)), points[-1])
 
 
 def _divided(points: Array, parts: Array) -> Array:

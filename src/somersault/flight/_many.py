@@ -26,7 +26,7 @@ from somersault.simulation import Endings, Name, Numbers, Target, Variable
 ACCURACY = 1e-7  # rad
 _TOGETHER = 16_384  # flights whose numbers are held at once,
 _TOGETHER_BYTES = 2**26  # or as many as these hold
-_FEWEST_TOGETHER = 64
+_FEWEST_TOGETHER = 8
 _OF_PATHS = ("times", "angles", "angle", "torques", "factor", "offset")
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections import Counter
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from somersault.attitude import AXES, Axes
 from somersault.model._bodies import GROUND, Body, Follow, Joint, speed_names
 from somersault.model._types_given import check_types
 
+MOST_SPEEDS = 300  # of joints: their equations take some minutes to compile
 _ALONG = 1 - 1e-12  # cosine to the normal of a plane from which on a hinge turns in the plane
 FREE_IT = (
     "give its base a free joint (in a .bioMod: its root segment translations xyz beside "
@@ -36,6 +38,12 @@ def check(
     """
     check_types(name, free, bodies)
     joints = [joint for body in bodies for joint in body.joints]
+    moving = sum(joint.speeds for joint in joints)
+    if moving > MOST_SPEEDS:
+        raise SomersaultError(
+            f"{name} moves in {moving} ways besides its base, and equations are written for up to "
+            f"{MOST_SPEEDS}; weld the bodies whose motion does not matter"
+        )
     if not bodies:
         raise SomersaultError(f"{name} has no bodies, so nothing can fly; add a body")
     if not free and axes != AXES:
@@ -49,8 +57,8 @@ def check(
         ("body", [body.name for body in bodies]),
         ("joint", [joint.name for joint in joints]),
     ):
-        twice = next((own for own in names if names.count(own) > 1), None)
-        if twice is not None:
+        twice, count = next(iter(Counter(names).most_common(1)), ("", 0))
+        if count > 1:
             raise SomersaultError(
                 f"{name} has two {what} elements named {twice!r}; give each its own name"
             )
