@@ -14,7 +14,10 @@ import pytest
 import somersault as so
 from somersault.model.read import _apart
 
-WORLD = '<worldbody><body name="a"><freejoint/><geom size="0.1"/>{}</body></worldbody>'
+WORLD = (
+    '<worldbody><body name="a"><freejoint/><geom size="0.1" contype="0" conaffinity="0"/>{}'
+    "</body></worldbody>"
+)
 ENDLESS = (
     '<replicate count="1000" offset="0.1 0 0">' * 6 + '<geom size="0.1"/>' + "</replicate>" * 6
 )
@@ -27,7 +30,6 @@ TOO_LARGE = {
     ),
     "numbers": ('<size nuserdata="1000000000"/>', ""),
     "numbers of a body": ('<size nuser_body="1000000000"/>', ""),
-    "memory": ('<size memory="100G"/>', ""),
     "sensor": ('<sensor><user dim="1000000000"/></sensor>', ""),
 }
 
@@ -42,6 +44,11 @@ def written(folder: Path, before: str = "", inside: str = "") -> Path:
 def test_more_memory_than_a_model_gets_is_refused(what: str, tmp_path: Path) -> None:
     with pytest.raises(so.SomersaultError, match=r"^robot\.xml asks for more than 2 GB of memory"):
         so.load(written(tmp_path, *TOO_LARGE[what]))
+
+
+@pytest.mark.parametrize("size", ['memory="100G"', 'njmax="80000" nconmax="40000"'])
+def test_room_for_a_simulation_is_none_that_is_taken(size: str, tmp_path: Path) -> None:
+    assert so.load(written(tmp_path, f"<size {size}/>")) == so.load(written(tmp_path))
 
 
 @pytest.mark.parametrize("limit", ["_SECONDS", "_WAIT"])

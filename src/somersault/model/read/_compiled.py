@@ -29,6 +29,8 @@ def compile_file(path: str) -> tuple[Any, list[bool]]:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # what MuJoCo will do otherwise one day
             spec = mujoco.MjSpec.from_file(os.fsencode(path))  # a name may be no text
+            # Room for a simulation, which there will be none of: some ask for many gigabytes.
+            spec.memory = spec.njmax = spec.nconmax = spec.nstack = -1
             return spec.compile(), _from_shapes(spec)
     except mujoco.FatalError as error:
         raise RuntimeError(str(error)) from None
