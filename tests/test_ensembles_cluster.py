@@ -12,8 +12,13 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import dask
 import pytest
 from test_ensembles_killed import begun, command, finished, same, spec, whole_of
+
+from somersault import SomersaultError
+from somersault.ensembles import tls_files
+from somersault.ensembles._scheduler import check_scheduler
 
 pytestmark = pytest.mark.slow
 BIN = Path(sys.executable).parent
@@ -33,17 +38,19 @@ def running(*argument: str) -> Iterator[subprocess.Popen[bytes]]:
         process.wait()
 
 
-def scheduler(port: int, host: str = "127.0.0.1") -> contextlib.AbstractContextManager:
+def scheduler(port: int, host: str = "127.0.0.1", *more: str) -> contextlib.AbstractContextManager:
     return running(
         str(BIN / "dask"), "scheduler", "--host", host, "--port", str(port), "--no-dashboard",
-        "--no-show",
+        "--no-show", *more,
     )  # fmt: skip
 
 
-def worker(address: str, *before: str) -> contextlib.AbstractContextManager:
+def worker(
+    address: str, *before: str, more: tuple[str, ...] = ()
+) -> contextlib.AbstractContextManager:
     return running(
         *before, str(BIN / "dask"), "worker", address, "--nthreads", "1", "--no-dashboard",
-        "--local-directory", "/tmp", "--death-timeout", "30",
+        "--local-directory", "/tmp", "--death-timeout", "30", *more,
     )  # fmt: skip
 
 
@@ -161,7 +168,9 @@ def test_a_worker_on_another_host_that_does_not_see_the_store(tmp_path: Path, se
                 command(file, store, "--scheduler", address), capture_output=True, text=True,
                 timeout=120,
             )  # fmt: skip
-        assert (last.returncode, last.stderr) == (0, "")
+        assert last.returncode == 0, last.stderr
+        assert last.stderr.startswith(f"note: {address} is reached in the clear")
+        assert last.stderr.count("\n") == 1, last.stderr
         same(store, whole_of(file))
     finally:
         subprocess.run(["ip", "netns", "del", name], capture_output=True)
@@ -196,3 +205,62 @@ def test_a_worker_with_a_copy_of_the_store_at_the_same_path(tmp_path: Path) -> N
         same(store, whole_of(file))
     else:
         assert (last.returncode, last.stderr.count("\n")) == (2, 1)
+
+
+# ------------------------------------------------------------------------------------------- TLS
+
+
+def certificate(folder: Path, name: str) -> dict[str, Path]:
+    """A certificate that is its own authority, and its key."""
+    files = {"ca": folder / f"{name}.pem", "key": folder / f"{name}-key.pem"}
+    subprocess.run(
+        ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj",
+         f"/CN={name}", "-keyout", str(files["key"]), "-out", str(files["ca"])],
+        check=True, capture_output=True,
+    )  # fmt: skip
+    return {"ca": files["ca"], "cert": files["ca"], "key": files["key"]}
+
+
+def options(files: dict[str, Path], *ca: str) -> tuple[str, ...]:
+    return ("--tls-ca" + "".join(ca), str(files["ca"]), "--tls-cert", str(files["cert"]),
+            "--tls-key", str(files["key"]))  # fmt: skip
+
+
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="needs openssl to make certificates")
+def test_a_cluster_with_certificates(tmp_path: Path) -> None:
+    """Whoever has one that its authority signed may come in, and nobody else."""
+    ours, others = (certificate(tmp_path, name) for name in ("ours", "others"))
+    mixed = {**ours, "cert": others["cert"], "key": others["key"]}
+    file, store = spec(tmp_path, 20), tmp_path / "map.zarr"
+    port = free_port()
+    address = f"tls://127.0.0.1:{port}"
+    theirs = options(ours, "-file")
+    with (
+        scheduler(port, "127.0.0.1", "--protocol", "tls", *theirs),
+        worker(address, more=theirs),
+    ):
+        answers(port)
+        last = subprocess.run(
+            command(file, store, "--scheduler", address, *options(ours)),
+            capture_output=True, text=True, timeout=300,
+        )  # fmt: skip
+        assert (last.returncode, last.stderr) == (0, "")
+        same(store, whole_of(file))
+        for at, security, words in (
+            (address, tls_files(**others), "that your authority has not signed"),
+            (address, tls_files(**mixed), "does not take your certificate"),
+            (address, None, "needs certificates; give --tls-ca"),
+            (f"tcp://127.0.0.1:{port}", tls_files(**ours), "write tls:// in front"),
+            (f"tcp://127.0.0.1:{port}", None, "no scheduler answers"),
+        ):
+            with pytest.raises(SomersaultError, match=words) as mistake:
+                check_scheduler(at, security)
+            assert "\n" not in str(mistake.value)
+        own = {"ca-file": ours["ca"], "client.cert": ours["cert"], "client.key": ours["key"]}
+        with dask.config.set({f"distributed.comm.tls.{key}": str(own[key]) for key in own}):
+            check_scheduler(address, None)
+    port = free_port()
+    with scheduler(port):
+        answers(port)
+        with pytest.raises(SomersaultError, match="speaks no TLS"):
+            check_scheduler(f"tls://127.0.0.1:{port}", tls_files(**ours))

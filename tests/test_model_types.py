@@ -105,7 +105,6 @@ def test_refused(what: str) -> None:
         arm(),
         arm(inertia=diagonal(1, 1, 2)),  # flat: the sum exactly
         arm(rotation=turned(0.4)),
-        hinge(stiffness=-3.0),  # a spring that pushes away is one
         hinge(limits=(0.5, 0.5)),
         hinge(kind="slide"),
         hinge(kind="ball"),
@@ -118,6 +117,11 @@ def test_refused(what: str) -> None:
 )
 def test_accepted(make: Callable[[], Model]) -> None:
     assert make().mass > 0
+
+
+def test_a_spring_that_pushes_away_is_one_with_a_note() -> None:
+    with pytest.warns(SomersaultWarning, match="'hinge' has negative stiffness"):
+        assert hinge(stiffness=-3.0)().mass > 0
 
 
 @settings(derandomize=True, max_examples=60, deadline=None)

@@ -15,7 +15,10 @@ class SomersaultError(ValueError):
 
 
 class SomersaultWarning(UserWarning):
-    """Something in a file or a call was left out because it cannot matter in flight."""
+    """Something that was accepted and is strange, or was left out as it cannot matter in flight.
+
+    It points at the line that called the package; the command line prints it as a note.
+    """
 
     def __init__(self, said: str) -> None:
         super().__init__(one_line(said))

@@ -17,7 +17,7 @@ EXAMPLES = """examples:
   somersault ensemble examples/layout_map.toml --out map.nc --plot map.png
   somersault ensemble SPEC.toml --landings landings.png
   somersault ensemble SPEC.toml --out map.zarr --workers 2
-  somersault ensemble SPEC.toml --out map.zarr --scheduler tcp://10.0.0.1:8786
+  somersault ensemble SPEC.toml --out map.zarr --scheduler tcp://127.0.0.1:8786
 
 A SPEC is that of `somersault fly`, and what varies:
   [vary.arm_angle]
@@ -52,6 +52,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--scheduler", metavar="ADDRESS", help="the dask scheduler whose workers fly"
     )
+    for option, what in (
+        ("--tls-ca", "certificate of the authority that signed the scheduler's and the workers'"),
+        ("--tls-cert", "certificate to show a scheduler at tls://"),
+        ("--tls-key", "its key, unless that is in the same file"),
+    ):
+        parser.add_argument(option, type=Path, metavar="FILE", help=what)
     parser.add_argument("--chunk", type=int, metavar="N", help="flights in a chunk")
     parser.add_argument(
         "--plot", type=Path, metavar="FILE", help=f"draw what is reported first: {PICTURE_ENDINGS}"
@@ -76,7 +82,7 @@ def run(chosen: argparse.Namespace) -> None:
     spec = read_ensemble(chosen.spec)
     flown = carried_out(
         spec.plan, None if whole else chosen.out, chosen.chunk, chosen.threads, chosen.workers,
-        chosen.scheduler, progress=sys.stderr.isatty(),
+        chosen.scheduler, _security(chosen), progress=sys.stderr.isatty(),
     )  # fmt: skip
     writing = Writing()
     record = {"model": spec.plan.simulation.name, "dimensions": spec.plan.dims}
@@ -102,6 +108,18 @@ def run(chosen: argparse.Namespace) -> None:
         record |= _ranking(flown.dataset, spec.quantities)
     print(json.dumps(record) if chosen.json else "\n".join(_page(record)))
     writing.finish()
+
+
+def _security(chosen: argparse.Namespace) -> Any:
+    """The certificates that are given; None leaves them to dask's configuration."""
+    from somersault._core.errors import SomersaultError
+    from somersault.ensembles import tls_files
+
+    if chosen.tls_ca is None and chosen.tls_cert is None and chosen.tls_key is None:
+        return None
+    if chosen.tls_ca is None or chosen.tls_cert is None:
+        raise SomersaultError("--tls-ca and --tls-cert go together; give both, and --tls-key")
+    return tls_files(chosen.tls_ca, chosen.tls_cert, chosen.tls_key)
 
 
 _MOST_RANKED = 100_000  # samples

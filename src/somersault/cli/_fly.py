@@ -54,7 +54,7 @@ def run(chosen: argparse.Namespace) -> None:
     """Fly, write the history, print how it ended."""
     from somersault._core.datasets import check_history_file
     from somersault._core.errors import SomersaultError
-    from somersault.flight import BROKEN, Maneuver, why_broken
+    from somersault.flight import BROKE_OFF, BROKEN, Maneuver, why_broken
 
     if chosen.out is not None:
         check_history_file(chosen.out)
@@ -67,7 +67,8 @@ def run(chosen: argparse.Namespace) -> None:
 
         check_page(chosen.page)
     maneuver = Maneuver.read(chosen.spec)
-    with warnings.catch_warnings(record=True):  # it is the error below
+    with warnings.catch_warnings():  # that it broke off is the error below
+        warnings.filterwarnings("ignore", message=BROKE_OFF)
         flight = maneuver.fly()
     if flight.ended in BROKEN:
         raise SomersaultError(

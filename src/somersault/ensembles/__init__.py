@@ -7,6 +7,7 @@ from somersault.ensembles._ensemble import ensemble
 from somersault.ensembles._landings import landing_derivatives, landing_map
 from somersault.ensembles._plan import Plan, plan
 from somersault.ensembles._result import Ensemble, check_out
+from somersault.ensembles._scheduler import tls_files
 from somersault.ensembles._sensitivity import quick_sensitivity, sensitivity
 from somersault.ensembles._spec import EnsembleSpec, parse_ensemble, read_ensemble
 from somersault.ensembles._summary import fraction, quantiles, summary, within
@@ -33,5 +34,6 @@ __all__ = [
     "read_ensemble",
     "sensitivity",
     "summary",
+    "tls_files",
     "within",
 ]

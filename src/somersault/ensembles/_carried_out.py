@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from somersault._core.checks import instance, text, truth, whole_number
-from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.errors import SomersaultError
+from somersault._core.notes import note
 from somersault.ensembles import _run, _store
 from somersault.ensembles._begin import create
 from somersault.ensembles._chunks import Chunks, chunked
 from somersault.ensembles._memory import empty_dataset, run_bytes
 from somersault.ensembles._plan import Plan
 from somersault.ensembles._result import Ensemble, check_out
+from somersault.ensembles._scheduler import check_scheduler, check_security
+
+if TYPE_CHECKING:
+    from distributed.security import Security
 
 _MOST_CHUNK = 10**9  # flights
 _MOST_THREADS = 1024
@@ -29,7 +33,7 @@ _MEMORY_BYTES = 2**31  # that a dataset without a store may take
 def carried_out(
     plan: Plan, out: str | Path | None = None, chunk: int | None = None,
     threads: int | None = None, workers: int | None = None, scheduler: str | None = None,
-    progress: bool = False,
+    security: Security | None = None, progress: bool = False,
 ) -> Ensemble:  # fmt: skip
     """The ensemble of a plan; with a store, what is left of it is run.
 
@@ -37,7 +41,7 @@ def carried_out(
     ----------
     plan : Plan
         Made by `ensembles.plan`.
-    out, chunk, threads, workers, scheduler, progress
+    out, chunk, threads, workers, scheduler, security, progress
         As for `ensemble`.
 
     Returns
@@ -59,12 +63,16 @@ def carried_out(
     truth("progress", progress)
     if scheduler is not None:
         text("scheduler", scheduler)
+    if security is not None:
+        if scheduler is None:
+            raise SomersaultError("certificates are for a scheduler; give its address, tls://…")
+        check_security(security)
     whole = out is not None and check_out(out)
     if workers is not None and scheduler is not None:
         raise SomersaultError("workers and scheduler are both given; give one of them")
     chunks = chunked(plan.dims, chunk or chunk_size(plan))
     if out is None or whole:
-        found = _in_memory(plan, chunks, threads, workers, scheduler, progress)
+        found = _in_memory(plan, chunks, threads, workers, scheduler, security, progress)
         if out is not None:
             _save(found, out)
         return found
@@ -73,9 +81,7 @@ def carried_out(
         chunks = _store.resume(file, plan)
     else:
         if scheduler is not None:  # before anything is written
-            from somersault.ensembles._cluster import check_scheduler
-
-            check_scheduler(scheduler)
+            check_scheduler(scheduler, security)
         create(file, plan, chunks)
         chunks = _store.resume(file, plan)  # which another program may have made meanwhile
     done = _store.finished(file, plan, chunks)
@@ -86,21 +92,24 @@ def carried_out(
     def put(k: int, rows: Mapping[str, Any]) -> None:
         _store.write(file, plan, chunks, k, rows)
 
-    _run_chunks(plan, chunks, left, put, file, threads, workers, scheduler, progress)
+    _run_chunks(plan, chunks, left, put, file, threads, workers, scheduler, security, progress)
     _store.tidy(file)
     return Ensemble(_store.opened(file), plan)
 
 
 def _run_chunks(
     plan: Plan, chunks: Chunks, left: list[int], put: _run.Put, file: Path | None,
-    threads: int | None, workers: int | None, scheduler: str | None, shown: bool,
+    threads: int | None, workers: int | None, scheduler: str | None, security: Security | None,
+    shown: bool,
 ) -> None:  # fmt: skip
     remaining = sum(map(chunks.size, left))
     with _run.progress_bar(plan.count, plan.count - remaining, shown) as advance:
         if left and (workers is not None or scheduler is not None):
             from somersault.ensembles._cluster import on_cluster
 
-            on_cluster(plan, chunks, left, put, advance, file, threads, workers, scheduler)
+            on_cluster(
+                plan, chunks, left, put, advance, file, threads, workers, scheduler, security
+            )
         else:
             _run.on_threads(plan, chunks, left, put, advance, threads)
 
@@ -110,17 +119,15 @@ def _save(found: Ensemble, out: str | Path) -> None:
     try:
         found.save(out)
     except OSError as trouble:
-        warnings.warn(
+        note(
             f"{out} could not be written ({trouble.strerror}): the ensemble is in memory alone; "
-            "`save` it to another place",
-            SomersaultWarning,
-            stacklevel=4,
+            "`save` it to another place"
         )
 
 
 def _in_memory(
     plan: Plan, chunks: Chunks, threads: int | None, workers: int | None,
-    scheduler: str | None, shown: bool,
+    scheduler: str | None, security: Security | None, shown: bool,
 ) -> Ensemble:  # fmt: skip
     if plan.count * run_bytes(plan) > _MEMORY_BYTES:
         raise SomersaultError(
@@ -128,7 +135,7 @@ def _in_memory(
         )
     data, put = empty_dataset(plan, chunks)
     every = list(range(len(chunks)))
-    _run_chunks(plan, chunks, every, put, None, threads, workers, scheduler, shown)
+    _run_chunks(plan, chunks, every, put, None, threads, workers, scheduler, security, shown)
     return Ensemble(data, plan)
 
 

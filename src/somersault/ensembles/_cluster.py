@@ -8,13 +8,9 @@ given to others; what the program had finished stays finished if it, or the sche
 from __future__ import annotations
 
 import asyncio
-import gc
-import logging
 import os
 import signal
-import socket
 import sys
-import warnings
 from collections.abc import Iterator, Mapping
 from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager, suppress
@@ -24,20 +20,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from somersault._core.array import Array
-from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.errors import SomersaultError
 from somersault._core.files import temporary_folder
 from somersault._core.interrupts import children_unaware
+from somersault._core.notes import note
 from somersault.engine import cores, processor
 from somersault.ensembles import _run, _store
 from somersault.ensembles._chunks import Chunks
 from somersault.ensembles._plan import Plan
+from somersault.ensembles._scheduler import connected, note_open_door, unlogged
 from somersault.ensembles._versions import versions
 
 if TYPE_CHECKING:
     from distributed import Client, LocalCluster
+    from distributed.security import Security
 
-_PORT = 8786  # a scheduler's, where none is given
-_PATIENCE = 10.0  # s to find a scheduler
 _WAIT_FOR_WORKERS = 60.0
 _AHEAD = 2  # tasks a worker has before it
 _TRIM_BYTES = 2**27
@@ -47,6 +44,7 @@ _DEATHS = 20  # of workers in one chunk, after which it is the chunk's fault
 def on_cluster(
     plan: Plan, chunks: Chunks, left: list[int], put: _run.Put, advance: _run.Advance,
     file: Path | None, threads: int | None, workers: int | None, scheduler: str | None,
+    security: Security | None,
 ) -> None:  # fmt: skip
     """Run the chunks that are `left` on processes of this machine, or on those of a scheduler."""
     import dask
@@ -58,9 +56,10 @@ def on_cluster(
         # dask would have workers give memory back after every array, and ask for it again.
         "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": _TRIM_BYTES,
     }
-    with dask.config.set(quiet), _unlogged():
+    with dask.config.set(quiet), unlogged():
         if scheduler is not None:
-            with _client(scheduler) as client:
+            note_open_door(scheduler)
+            with connected(scheduler, security) as client:
                 _carry(client, plan, chunks, left, put, advance, file, threads, scheduler)
             return
         assert workers is not None
@@ -103,51 +102,6 @@ def _ended_at_once(cluster: LocalCluster) -> Iterator[None]:
             with suppress(ProcessLookupError):
                 os.kill(nanny.pid, signal.SIGTERM)
         raise
-
-
-@contextmanager
-def _unlogged() -> Iterator[None]:
-    """What goes wrong is said in one sentence, and not in dask's log as well."""
-    logs = [logging.getLogger(name) for name in ("distributed", "distributed.client")]
-    levels = [log.level for log in logs]
-    for log in logs:
-        log.setLevel(logging.CRITICAL + 1)
-    try:
-        yield
-    finally:
-        for log, level in zip(logs, levels, strict=True):
-            log.setLevel(level)
-
-
-def check_scheduler(address: str) -> None:
-    """SomersaultError unless a scheduler answers at an address."""
-    with _unlogged():
-        _client(address).close()
-
-
-def _client(address: str) -> Client:
-    from distributed import Client
-
-    try:
-        _listens(address)
-        # A client that came to nothing must not be swept up while another is being made:
-        # distributed holds one lock for both.
-        gc.collect()
-        return Client(address, timeout=_PATIENCE)
-    except Exception as trouble:  # every kind of address has its own
-        raise SomersaultError(
-            f"no scheduler answers at {address!r} ({type(trouble).__name__}); start one with "
-            "'dask scheduler' and give its address, like tcp://127.0.0.1:8786"
-        ) from None
-
-
-def _listens(address: str) -> None:
-    """OSError or ValueError unless something listens at a TCP address."""
-    from distributed.comm.addressing import parse_address, parse_host_port
-
-    scheme, place = parse_address(address)
-    if scheme in ("tcp", "tls"):
-        socket.create_connection(parse_host_port(place, _PORT), _PATIENCE).close()
 
 
 def _carry(
@@ -223,12 +177,10 @@ def _note_processors(client: Client) -> None:
     """Warn of workers whose code may round otherwise than this program's."""
     others = sorted(set(client.run(processor).values()) - {processor()})
     if others:
-        warnings.warn(
+        note(
             f"there are workers on {', '.join(others)}, and this program is on {processor()}: the "
             "last digits depend on who computes them; take workers of one kind if they "
-            "matter",
-            SomersaultWarning,
-            stacklevel=2,
+            "matter"
         )
 
 

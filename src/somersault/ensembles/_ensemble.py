@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from somersault._core.checks import name_list
-from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.errors import SomersaultError
+from somersault._core.notes import note
 from somersault.ensembles._carried_out import carried_out
 from somersault.ensembles._plan import Plan, plan
 from somersault.ensembles._result import Ensemble
@@ -17,6 +17,9 @@ from somersault.ensembles._vary import Vary
 from somersault.flight import Flight, Maneuver, Report, Takeoff, flights
 from somersault.model import Model
 from somersault.simulation import LANDING_ERROR, Simulation
+
+if TYPE_CHECKING:
+    from distributed.security import Security
 
 
 def ensemble(
@@ -38,6 +41,7 @@ def ensemble(
     threads: int | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
+    security: Security | None = None,
     progress: bool = False,
 ) -> Ensemble:
     """Many flights of one maneuver, differing in what is varied.
@@ -86,7 +90,9 @@ def ensemble(
     workers : int, optional
         Processes of dask.distributed that run them instead.
     scheduler : str, optional
-        Address of the dask scheduler whose workers run them instead.
+        Address of the dask scheduler whose workers run them instead: tls://… or tcp://….
+    security : distributed.security.Security, optional
+        The certificates for a scheduler at tls://; by default those of dask's configuration.
     progress : bool
         Whether a bar shows how far it is.
 
@@ -119,7 +125,9 @@ def ensemble(
         {"against": against, "accuracy": accuracy, "until": until, "steps": steps},
     )  # fmt: skip
     planned = plan(simulation, vary, size, seed, sequence)
-    found = carried_out(planned, out, chunk, threads, workers, scheduler, progress)
+    found = carried_out(
+        planned, out, chunk, threads, workers, scheduler, security, progress
+    )  # fmt: skip
     _warn_of_failures(planned, found)
     return found
 
@@ -171,9 +179,7 @@ def _warn_of_failures(planned: Plan, found: Ensemble) -> None:
     }
     if lost:
         reasons = ", ".join(f"{word}: {count:,}" for word, count in lost.items())
-        warnings.warn(
+        note(
             f"{sum(lost.values()):,} of {planned.count:,} flights broke off ({reasons}); what they "
-            "report is NaN, and counts as failed",
-            SomersaultWarning,
-            stacklevel=3,
+            "report is NaN, and counts as failed"
         )

@@ -16,6 +16,7 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.checks import by_name, instance, shown, whole_number
+from somersault._core.degrees import note_degrees
 from somersault._core.errors import SomersaultError
 from somersault._core.plain import plain
 from somersault.ensembles import _vary
@@ -265,6 +266,9 @@ def plan(
         sequence,
     )
     _check_sample(planned)
+    for name, quantity in planned.vary.items():
+        if quantity.unit == "rad":
+            note_degrees(f"vary.{name}", _vary.written(quantity))
     if planned.count > MOST_RUNS:
         shape = " x ".join(f"{n} {length}" for n, length in planned.dims.items())
         raise SomersaultError(

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import time
-import warnings
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
@@ -17,8 +16,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.errors import SomersaultError
 from somersault._core.interrupts import unbroken
+from somersault._core.notes import note
 from somersault.engine import processor
 from somersault.ensembles._begin import write_anew
 from somersault.ensembles._chunks import Chunks
@@ -59,7 +59,7 @@ def resume(path: Path, plan: Plan) -> Chunks:
     if names is None or names:
         write_anew(path, plan, chunks, names)
         what = "metadata" if names is None else f"what it says of {', '.join(names)}"
-        _warn(f"{path} was damaged ({what}), and has been mended")
+        note(f"{path} was damaged ({what}), and has been mended")
     return chunks
 
 
@@ -109,14 +109,10 @@ def note_processor(path: Path) -> None:
     """Warn where a store was begun on another kind of processor than this one."""
     begun = read_metadata(path)["attributes"]["processor"]
     if begun != processor():
-        _warn(
+        note(
             f"{path} was begun on {begun}, and this is {processor()}: the last digits of what is "
             "run now may differ; go on there, or begin another, if they matter"
         )
-
-
-def _warn(message: str) -> None:
-    warnings.warn(message, SomersaultWarning, stacklevel=3)
 
 
 def _difference(theirs: Any, ours: Any, key: str = "") -> str:
@@ -133,7 +129,7 @@ def finished(path: Path, plan: Plan, chunks: Chunks) -> set[int]:
     complete, damaged = seals_of_plan(path, plan, chunks).check()
     if damaged:
         were = "chunk was" if len(damaged) == 1 else "chunks were"
-        _warn(f"{len(damaged):,} {were} damaged in {path}: run again")
+        note(f"{len(damaged):,} {were} damaged in {path}: run again")
     return complete
 
 

@@ -159,6 +159,13 @@ def _listed(values: Any) -> Array:
     return np.asarray(values, float)
 
 
+def written(vary: Vary) -> Any:
+    """The numbers that it was given: its grid, its samples, or those of its distribution."""
+    if vary.grid is not None:
+        return vary.grid
+    return vary.samples if vary.distribution is None else getattr(vary, vary.distribution)
+
+
 def check(name: str, vary: Vary) -> None:
     """SomersaultError, naming the key, unless a varied quantity makes sense."""
     where = f"vary.{name}"

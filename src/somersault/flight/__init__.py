@@ -26,6 +26,7 @@ from somersault.flight._prop import Prop
 from somersault.flight._release import Release, released
 from somersault.flight._report import ENDINGS, Report, landing_error, landing_target
 from somersault.flight._spec import KEYS
+from somersault.flight._strange import BROKE_OFF
 from somersault.flight._swing import GRAVITY, Swing, height_energy, swing
 from somersault.flight._takeoff import Takeoff
 from somersault.flight._twist_time import twist_time
@@ -34,6 +35,7 @@ from somersault.flight.behaviours import JointTakeoff
 
 __all__ = [
     "BROKEN",
+    "BROKE_OFF",
     "ENDINGS",
     "GRAVITY",
     "KEYS",

@@ -40,7 +40,8 @@ def fly(
     Returns
     -------
     Flight
-        Where it broke off, with a SomersaultWarning that says why.
+        Where it broke off, or joints went far beyond their limits, with a SomersaultWarning that
+        says so.
 
     Raises
     ------

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -13,16 +12,16 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.checks import file_path, instance, shown, whole_number
-from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number, numbers
 from somersault._core.places import check_file
 from somersault.flight._batch import Batch
-from somersault.flight._broken import BROKEN, why_broken
 from somersault.flight._flight import Flight
 from somersault.flight._flown import flown
 from somersault.flight._plane import refuse_out_of_plane
 from somersault.flight._prescribed import prescribed
 from somersault.flight._spec import parsed, tables
+from somersault.flight._strange import note_strange
 from somersault.flight._takeoff import Takeoff, require_takeoff
 from somersault.flight._variants import Variants
 from somersault.flight.behaviours import OnPath
@@ -161,7 +160,8 @@ class Maneuver(Variants):
         Returns
         -------
         Flight
-            Where it broke off, with a SomersaultWarning that says why.
+            Where it broke off, or joints went far beyond their limits, with a SomersaultWarning
+            that says so.
 
         Examples
         --------
@@ -174,12 +174,7 @@ class Maneuver(Variants):
             return self.changed(**options).fly()
         gravity = numbers("gravity", self.gravity, 3)
         flight = flown(self.batch, self.times, gravity, self.accuracy, self.steps)
-        if flight.ended in BROKEN:
-            warnings.warn(
-                f"the flight broke off at {flight.landing.time:g} s: {why_broken(flight)}",
-                SomersaultWarning,
-                stacklevel=2,
-            )
+        note_strange(flight)
         return flight
 
     @property

@@ -9,6 +9,7 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.checks import by_name, instance, name_list, whole_number
+from somersault._core.degrees import note_degrees
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import floats, number
 from somersault.engine import STATUS
@@ -170,6 +171,10 @@ def check(report: Report, target: Mapping[str, float], model: Model) -> None:
                 )
         if len(set(names)) < len(tuple(names)):
             raise SomersaultError(f"{where} names the same thing twice; leave one out")
+    slides = {joint.name for joint in model.joints if joint.kind == "slide"}
+    for name, angle in target.items():
+        if name not in slides:
+            note_degrees(f"target.{name}", angle)
     if LANDING_ERROR in report.quantities and not target:
         raise SomersaultError(
             "report.quantities has landing_error, which needs a target; give angles to land "

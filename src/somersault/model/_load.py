@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
@@ -12,13 +11,13 @@ from pathlib import Path
 from typing import get_args
 
 from somersault._core.checks import one_of, shown
-from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.errors import SomersaultError
+from somersault._core.notes import listed, note
 from somersault.attitude import as_axes
 from somersault.model._base import Base, rebased
 from somersault.model._formats import endings, reader
 from somersault.model._mass import check_mass_matrix
 from somersault.model._model import Model
-from somersault.model._strange import listed
 
 _SHIPPED = files("somersault.model") / "shipped"
 
@@ -115,23 +114,19 @@ def _found(source: str | os.PathLike[str] | Model, base: Base | None) -> Model:
         text = model.name.encode(errors="surrogateescape").decode(errors="replace")
         model = replace(model, name=text)
     if model.ignored:
-        _note(path, f"left out, as they have no part in flight: {', '.join(model.ignored)}")
+        left_out = ", ".join(model.ignored)
+        note(f"{path.name}: left out, as they have no part in flight: {left_out}")
     outside = [
         f"{joint.name} ({joint.home[0]:g})"
         for joint in model.joints
         if joint.drawn_outside and joint.follows is None
     ]
     if outside:
-        _note(
-            path,
-            "joints drawn outside their ranges stand at the nearer end where nothing else is said "
-            f"of them: {listed(outside)}",
+        note(
+            f"{path.name}: joints drawn outside their ranges stand at the nearer end where nothing "
+            f"else is said of them: {listed(outside)}"
         )
     return model
-
-
-def _note(path: Path, what: str) -> None:
-    warnings.warn(f"{path.name}: {what}", SomersaultWarning, stacklevel=4)
 
 
 @cache

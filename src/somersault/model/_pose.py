@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
 from somersault._core.checks import by_name, shown, truth
+from somersault._core.degrees import degrees_hint, note_degrees
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import floats, require_together
 from somersault.model._bodies import LIMIT_SLACK, Follow, Joint
@@ -95,13 +96,16 @@ def _owner(model: Model, name: str) -> Joint:
 
 def _check_limits(model: Model, joint: Joint, value: Array) -> None:
     if joint.limits is None:
+        if joint.kind == "hinge":
+            note_degrees(f"pose {joint.name}", value)
         return
     low, high = joint.limits
     out = value[(value < low - LIMIT_SLACK) | (value > high + LIMIT_SLACK)]
     if out.size:
+        hint = degrees_hint(float(out.flat[0])) if joint.kind == "hinge" else ""
         raise SomersaultError(
             f"pose {joint.name}={out.flat[0]:g} is outside the joint's limits in {model.name}; "
-            f"give {low:g} to {high:g}"
+            f"give {low:g} to {high:g}{hint}"
         )
 
 

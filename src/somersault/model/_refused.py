@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections import Counter
 
 import numpy as np
 
 from somersault._core.checks import shown
-from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.errors import SomersaultError
+from somersault._core.notes import note
 from somersault.attitude import AXES, Axes
 from somersault.model._bodies import GROUND, Body, Follow, Joint, speed_names
 from somersault.model._types_given import check_types
 
 MOST_SPEEDS = 300  # of joints: their equations take some minutes to compile
 _ALONG = 1 - 1e-12  # cosine to the normal of a plane from which on a hinge turns in the plane
+_LIGHTEST, _HEAVIEST = 1e-6, 1e4  # kg: a fruit fly, and any athlete in grams
 FREE_IT = (
     "give its base a free joint (in a .bioMod: its root segment translations xyz beside "
     "rotations xyz)"
@@ -76,8 +77,7 @@ def check(
             _check_joint(name, joint)
             if joint.follows is not None:
                 _check_follow(name, joints, joint, joint.follows)
-    if math.fsum(body.mass for body in bodies) <= 0:
-        raise SomersaultError(f"{name} has no mass; give its bodies masses")
+    _check_mass(name, math.fsum(body.mass for body in bodies))
     _check_moving_mass(name, bodies)
     _warn_of_impossible(name, bodies if plane is None else _turning_out(bodies, plane))
 
@@ -174,12 +174,10 @@ def _warn_of_impossible(name: str, bodies: tuple[Body, ...]) -> None:
             odd.append(f"{body.name} ({large / max(small + middle, 1e-300):.4g} times)")
     if odd:
         more = f" and {len(odd) - 8} more" if len(odd) > 8 else ""
-        warnings.warn(
+        note(
             f"{name}: no rigid body has inertia without mass, or a principal inertia that is "
             "negative or larger than the sum of the other two, as these have: "
-            f"{', '.join(odd[:8])}{more}; flown as given",
-            SomersaultWarning,
-            stacklevel=4,
+            f"{', '.join(odd[:8])}{more}; flown as given"
         )
 
 
@@ -195,6 +193,10 @@ def _check_joint(name: str, joint: Joint) -> None:
         raise SomersaultError(f"{where} has an axis of length {math.hypot(*joint.axis):g}; give 1")
     if joint.limits is not None and joint.limits[0] > joint.limits[1]:
         raise SomersaultError(f"{where} has limits in the wrong order; give the smaller first")
+    if joint.stiffness < 0:
+        note(
+            f"{where} has negative stiffness ({joint.stiffness:g}), which drives it away from rest"
+        )
     for what in ("damping", "armature"):
         if getattr(joint, what) < 0:
             raise SomersaultError(f"{where} has negative {what}; it must be zero or positive")
@@ -217,6 +219,13 @@ def _check_follow(name: str, joints: list[Joint], joint: Joint, follow: Follow) 
         )
     if not (math.isfinite(follow.factor) and math.isfinite(follow.offset)):
         raise SomersaultError(f"{where} follows by numbers that are not finite; give finite ones")
+
+
+def _check_mass(name: str, mass: float) -> None:
+    if mass <= 0:
+        raise SomersaultError(f"{name} has no mass; give its bodies masses")
+    if not _LIGHTEST <= mass <= _HEAVIEST:
+        note(f"{name} has a mass of {mass:g} kg in all; masses are in kg, lengths in m")
 
 
 def _check_moving_mass(name: str, bodies: tuple[Body, ...]) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from somersault._core.notes import listed
+
 
 @dataclass(slots=True)
 class Strange:
@@ -18,9 +20,3 @@ class Strange:
     def sentences(self) -> list[str]:
         """One sentence for each kind, with the first few names."""
         return [f"{what}: {listed(list(names))}" for what, names in self.said.items()]
-
-
-def listed(names: list[str], most: int = 8) -> str:
-    """The first few names, and how many more there are."""
-    more = len(names) - most
-    return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")

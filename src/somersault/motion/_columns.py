@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -11,7 +10,8 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.checks import shown
-from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.errors import SomersaultError
+from somersault._core.notes import note
 from somersault.model import Model
 from somersault.motion._names import nameable, spread
 from somersault.motion._recorded_base import RecordedBase, from_coordinates, from_numbers
@@ -147,11 +147,9 @@ def _led(model: Model, rows: dict[str, Array], times: Array, source: str) -> dic
         off = np.abs(rows[name] - follow.factor * leading[follow.leader] - follow.offset)
         worst = int(np.argmax(off))
         if off[worst] > _APART:
-            warnings.warn(
+            note(
                 f"{source}: joint {name} follows {follow.leader} in the model, and is recorded "
-                f"{off[worst]:.3g} from there at {times[worst]:.6g} s; it is taken to follow",
-                SomersaultWarning,
-                stacklevel=4,
+                f"{off[worst]:.3g} from there at {times[worst]:.6g} s; it is taken to follow"
             )
     return leading
 
@@ -168,11 +166,9 @@ def _base(model: Model, found: _Found, source: str) -> RecordedBase | None:
         return None
     base, missing = from_coordinates(model, found.times, found.root)
     if missing:
-        warnings.warn(
+        note(
             f"{source}: the base's {_list(missing)} are not recorded, and taken to stay where the "
-            "model has them",
-            SomersaultWarning,
-            stacklevel=4,
+            "model has them"
         )
     return base
 

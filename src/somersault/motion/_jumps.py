@@ -7,13 +7,13 @@ by much from every sample to the next does not jump.
 
 from __future__ import annotations
 
-import warnings
 from math import degrees, pi
 
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.errors import SomersaultError
+from somersault._core.notes import note
 
 _TURN = 2 * pi
 _AROUND = 3  # steps before, and after, among which a step is an ordinary one
@@ -41,12 +41,10 @@ def without_turns(name: str, source: str, times: Array, angles: Array) -> Array:
         return angles
     more = len(places) - _SHOWN
     shown = ", ".join(f"{times[k]:.6g} and {times[k + 1]:.6g}" for k in places[:_SHOWN])
-    warnings.warn(
+    note(
         f"{source}: joint {name} jumps by a whole turn between {shown} s"
         + (f" and {more} times more" if more > 0 else "")
-        + ", and is taken to go on",
-        SomersaultWarning,
-        stacklevel=4,
+        + ", and is taken to go on"
     )
     return angles - _TURN * np.concatenate([[0.0], np.cumsum(turns)])
 

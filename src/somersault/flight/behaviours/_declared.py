@@ -12,6 +12,8 @@ from typing import Any, Literal
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.degrees import note_degrees
+from somersault._core.notes import note
 from somersault._core.numbers import number, numbers
 from somersault.model import Joint
 from somersault.simulation import Name, Numbers
@@ -26,7 +28,8 @@ class Quantity:
 
     `unit` of a hinge, `slide_unit` of a slide. `image` says what the mirrored joint gets: the
     "same" number, one "turned" over with the joint's rate, or an "angle" about the pose in which
-    the file draws the joint. `least` is the smallest that makes sense. A `limited` one must be
+    the file draws the joint. `least` is the smallest that makes sense,
+    and what is below `usual` is noted. A `limited` one must be
     within the joint's limits at takeoff.
     """
 
@@ -36,6 +39,7 @@ class Quantity:
     row: bool = False
     least: float | None = None
     limited: bool = False
+    usual: float | None = None
 
 
 def quantity(
@@ -47,6 +51,7 @@ def quantity(
     row: bool = False,
     least: float | None = None,
     limited: bool = False,
+    usual: float | None = None,
     kw_only: bool = True,
 ) -> Any:
     """Declare a field that is a number, or a row of numbers.
@@ -61,6 +66,7 @@ def quantity(
     row : bool
     least : float, optional
     limited : bool
+    usual : float, optional
         As in `Quantity`.
     kw_only : bool
         Whether it is given by name only.
@@ -69,7 +75,7 @@ def quantity(
     -------
     dataclasses.Field
     """
-    declared = Quantity(unit, slide_unit or unit, image, row, least, limited)
+    declared = Quantity(unit, slide_unit or unit, image, row, least, limited, usual)
     return field(default=default, kw_only=kw_only, metadata={_KEY: declared})
 
 
@@ -85,7 +91,7 @@ def rate(**options: Any) -> Any:
 
 def stiffness(**options: Any) -> Any:
     """A spring's stiffness."""
-    return quantity("N m/rad", "N/m", **options)
+    return quantity("N m/rad", "N/m", usual=0.0, **options)
 
 
 def damping(**options: Any) -> Any:
@@ -134,6 +140,17 @@ def checked(where: str, joint: Joint, name: str, what: Quantity, value: Any) -> 
         still = isinstance(value, float | int) and value == 0
         return tuple(numbers(label, (0, 0, 0) if still else value, 3).tolist())
     return number(label, value)
+
+
+def note_strange(where: str, joint: Joint, name: str, what: Quantity, value: Any) -> None:
+    """Note a checked value that looks like degrees, or drives a joint away where others hold it."""
+    if value is None:
+        return
+    bounded = what.limited and joint.limits is not None  # by which it is judged elsewhere
+    if what.image == "angle" and joint.kind != "slide" and not bounded:
+        note_degrees(f"{where}: {name}", value)
+    if what.usual is not None and value < what.usual:
+        note(f"{where} has negative {name} ({value:g}), which drives it away from rest")
 
 
 def spread(joint: str, name: str, value: Any) -> dict[Name, float]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.degrees import degrees_hint
 from somersault._core.errors import SomersaultError
 from somersault.model import LIMIT_SLACK, Joint
 
@@ -17,8 +18,9 @@ def check_limits(joint: Joint, angles: tuple[float, ...]) -> None:
     low, high = min(angles), max(angles)
     if low < least - LIMIT_SLACK or high > most + LIMIT_SLACK:
         worst = low if low < least - LIMIT_SLACK else high
+        hint = degrees_hint(worst) if joint.kind == "hinge" else ""
         raise SomersaultError(
-            f"joint {joint.name}: angle {worst:g} is outside its limits {least:g} to {most:g}"
+            f"joint {joint.name}: angle {worst:g} is outside its limits {least:g} to {most:g}{hint}"
         )
 
 

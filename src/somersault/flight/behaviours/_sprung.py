@@ -27,7 +27,7 @@ class Sprung(Moving, motion="sprung"):
     stiffness: float | None = _declared.stiffness()
     rest: float | None = _declared.rest()
     hold: bool = False
-    K: float | None = _declared.quantity("1")
+    K: float | None = _declared.quantity("1", usual=0.0)
     B: float | None = _declared.quantity("1", least=0.0)
 
     def settled(self, joint: Joint) -> JointTakeoff:

@@ -14,7 +14,8 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.checks import shown
-from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.errors import SomersaultError
+from somersault._core.notes import note
 from somersault.model._model import Model
 from somersault.model.athlete._athlete import Part, Physique, Shoulders, athlete_model, joined
 from somersault.model.athlete._figure import BALL, solid, stadium
@@ -119,11 +120,9 @@ def _weighed(human_type: Any, metres: dict[str, float], densities: str) -> Any:
         )
     stadia = sum("is defined incorrectly" in " ".join(str(w.message).split()) for w in mended)
     if stadia:
-        warnings.warn(
+        note(
             f"{stadia} cross-sections have a perimeter that is not 2 to π times their width; "
-            "yeadon took circles for them",
-            SomersaultWarning,
-            stacklevel=3,
+            "yeadon took circles for them"
         )
     return human
 

@@ -8,14 +8,14 @@ needs two seconds and pandas to import; biorbd itself insists on opening the mes
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.errors import SomersaultError
+from somersault._core.notes import note
 from somersault.model._base import Base, Rooted, root, rooted
 from somersault.model._bodies import GROUND, Body, Joint
 from somersault.model._model import FileCoordinates, Model
@@ -55,7 +55,7 @@ def read_biomod(path: Path, base: Base | None = None) -> Model:
     for kind, number in file.acting.items():
         file.strange.add("acting in the file, but left out of flights", _counted(kind, number))
     for sentence in file.strange.sentences():
-        warnings.warn(f"{path.name}: {sentence}", SomersaultWarning, stacklevel=4)
+        note(f"{path.name}: {sentence}")
     return Model(
         name=path.stem,
         free=on.free,

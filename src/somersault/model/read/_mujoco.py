@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.errors import SomersaultError
+from somersault._core.notes import listed, note
 from somersault.attitude import matrix_from_quaternion
 from somersault.model._base import Base, rooted
 from somersault.model._bodies import GROUND, Body, Follow, Joint
 from somersault.model._model import Model
-from somersault.model._strange import listed
 from somersault.model._vectors import Matrix, Vector
 from somersault.model.read._apart import compiled_model
 from somersault.model.read._follow import leaders
@@ -47,6 +47,7 @@ def read_mjcf(path: Path, base: Base | None = None) -> Model:
         bodies, free = _bodies(path.name, compiled, from_shapes)
         left_out = _left_out(compiled)
         dry = [_joint_name(compiled, j) for j in range(compiled.njnt) if _has_friction(compiled, j)]
+        turned = [_joint_name(compiled, j) for j in range(compiled.njnt) if _turned(compiled, j)]
     except UnicodeDecodeError:
         raise SomersaultError(
             f"{path.name} has names that are not UTF-8; save it as UTF-8"
@@ -58,10 +59,11 @@ def read_mjcf(path: Path, base: Base | None = None) -> Model:
             "or load it with base='free'"
         )
     if dry:
-        warnings.warn(
-            f"{path.name}: joints' dry friction (frictionloss) is left out: {listed(dry)}",
-            SomersaultWarning,
-            stacklevel=5,
+        note(f"{path.name}: joints' dry friction (frictionloss) is left out: {listed(dry)}")
+    if turned:
+        note(
+            f"{path.name}: ranges the wrong way round count for nothing, as in MuJoCo: "
+            f"{listed(turned)}"
         )
     left_out += [f"body {name}, fixed to the ground" for name in on.still]
     if any(joint.damping for joint in on.let_go):
@@ -254,6 +256,12 @@ def _flex_name(m: Any) -> str | int:
 def _has_friction(m: Any, j: int) -> bool:
     dof = int(m.jnt_dofadr[j])
     return bool(m.dof_frictionloss[dof] != 0)
+
+
+def _turned(m: Any, j: int) -> bool:
+    """Whether a joint's range is the wrong way round."""
+    low, high = m.jnt_range[j]
+    return bool(low > high)
 
 
 def _refuse_joint(file: str, m: Any, j: int) -> None:

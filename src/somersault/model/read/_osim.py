@@ -6,14 +6,14 @@ format, but takes 280 MB and cannot be loaded into one process with CasADi, of w
 
 from __future__ import annotations
 
-import warnings
 from collections import Counter, deque
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.errors import SomersaultError
+from somersault._core.notes import note
 from somersault.model._base import Base, root, rooted
 from somersault.model._bodies import GROUND, Body
 from somersault.model._model import FileCoordinates, Model
@@ -23,7 +23,7 @@ from somersault.model.read._drawn import Drawn
 from somersault.model.read._osim_functions import Line
 from somersault.model.read._osim_gears import Gears
 from somersault.model.read._osim_joints import FREE, Coordinate, Links, Move
-from somersault.model.read._osim_left_out import no_part_in_flight, note
+from somersault.model.read._osim_left_out import add_left_out, no_part_in_flight
 from somersault.model.read._osim_parts import GROUND_NAME, Part, parts_and_links
 from somersault.model.read._osim_shapes import body_shapes, geometry_folders
 from somersault.model.read._osim_words import Words
@@ -62,9 +62,9 @@ def read_osim(path: Path, base: Base | None = None) -> Model:
     on = rooted(path.name, bodies, free=False, base=base)
     if not on.bodies:
         raise SomersaultError(f"{path.name}: nothing in it moves, so nothing can fly")
-    note(strange, model, links, gears)
+    add_left_out(strange, model, links, gears)
     for sentence in strange.sentences():
-        warnings.warn(f"{path.name}: {sentence}", SomersaultWarning, stacklevel=4)
+        note(f"{path.name}: {sentence}")
     ignored = no_part_in_flight(model) + [f"body {name}, fixed to the ground" for name in on.still]
     if any(joint.stiffness or joint.damping for joint in on.let_go):
         ignored.append("the springs and dampers of the base")

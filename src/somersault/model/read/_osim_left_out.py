@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from somersault.model._strange import Strange, listed
+from somersault._core.notes import listed
+from somersault.model._strange import Strange
 from somersault.model.read._osim_functions import Curve
 from somersault.model.read._osim_gears import Gears
 from somersault.model.read._osim_joints import Links
@@ -36,7 +37,7 @@ def no_part_in_flight(model: Element) -> list[str]:
     return said + [_counted(kind, n) for kind, n in counts.items() if n]
 
 
-def note(strange: Strange, model: Element, links: Sequence[Links], gears: Gears) -> None:
+def add_left_out(strange: Strange, model: Element, links: Sequence[Links], gears: Gears) -> None:
     """Note all that a flight is without, or has otherwise than the file."""
     forces: Counter[str] = Counter()
     for element in model.below("ForceSet", "objects"):

@@ -8,14 +8,14 @@ with which the tests compare mass matrices.
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.errors import SomersaultError
+from somersault._core.notes import note
 from somersault.attitude import matrix_from_quaternion
 from somersault.model._base import Base, rooted
 from somersault.model._bodies import GROUND, Body, Joint
@@ -64,7 +64,7 @@ def read_urdf(path: Path, base: Base | None = None) -> Model:
             "base='free'"
         )
     for sentence in file.strange.sentences():
-        warnings.warn(f"{path.name}: {sentence}", SomersaultWarning, stacklevel=4)
+        note(f"{path.name}: {sentence}")
     left_out = [
         f"{count} {what}{'' if count == 1 else 's'}" for what, count in file.no_part.items()
     ]
