@@ -159,6 +159,25 @@ def test_a_parameter_alone_is_open() -> None:
         assert_close(ours, Equations(load("furrer")).forward_dynamics(q, v, torques), 1e-12)
 
 
+def test_an_open_mass_takes_its_inertia_along_unless_that_is_open_too() -> None:
+    model = _tilted(random_tree(np.random.default_rng([66, 3]), bodies=3, free=True))
+    state = states(Equations(model), 3)
+    body = model.bodies[-1]
+    mass = f"bodies.{body.name}.mass"
+
+    def of(factor: float, inertia: float) -> Any:
+        denser = tuple(tuple(inertia * x for x in row) for row in body.inertia)
+        other = replace(body, mass=factor * body.mass, inertia=denser)
+        return Equations(replace(model, bodies=(*model.bodies[:-1], other))).mass_matrix(state.q)
+
+    alone = Equations(model, [mass]).mass_matrix(state.q, parameters=[1.7 * body.mass])
+    assert_close(alone, of(1.7, 1.7), 1e-12)
+    both = Equations(model, [mass, f"bodies.{body.name}.inertia.11"])
+    given = both.mass_matrix(state.q, parameters=[1.7 * body.mass, body.inertia[0][0]])
+    assert_close(given, of(1.7, 1.0), 1e-12)
+    assert np.abs(alone - given).max() > 1e-3
+
+
 # ----------------------------------------------------------------------------- closed forms
 
 

@@ -319,7 +319,9 @@ def test_a_chart_over_the_body_is_what_other_bodies_do() -> None:
     found = chart("furrer", *quantities, fixed=fixed)
     for length in lengths:
         for mass in masses:
-            other = replace(body, mass=mass, com=(0.0, 0.0, length))
+            denser = np.array(body.inertia) * mass / body.mass  # of the same shape
+            inertia = tuple(map(tuple, denser.tolist()))
+            other = replace(body, mass=mass, com=(0.0, 0.0, length), inertia=inertia)
             spun = spin(Model("other", True, (other, *arms)), 2, {"shoulder": 1.3})
             at = {"bodies.body.com.3": length, "bodies.body.mass": mass}
             rate = float(found.growth_rate.sel(at))

@@ -41,7 +41,8 @@ class Equations(SymbolicEquations):
         "bodies.BODY.com.1", "bodies.BODY.inertia.12", "bodies.BODY.position.2",
         "joints.JOINT.stiffness", "joints.JOINT.rest", "joints.JOINT.damping". Each method then
         takes `parameters` (…, number of names), and uses the model's own numbers where none are
-        given. Everything else is a constant in the compiled code.
+        given. Moments of inertia go along with a mass that is open, unless one of the body's is
+        open too. Everything else is a constant in the compiled code.
 
     Attributes
     ----------

@@ -3,6 +3,9 @@
 They are spelled as in a SPEC file: "bodies.torso.mass", "bodies.torso.com.1",
 "bodies.torso.inertia.12", "bodies.torso.position.2", "joints.knee.stiffness", "joints.knee.rest",
 "joints.knee.damping".
+
+A body whose mass is open keeps its shape, lighter or denser: its moments of inertia go along with
+the mass, unless one of them is open too, in which case all are as they are given.
 """
 
 from __future__ import annotations

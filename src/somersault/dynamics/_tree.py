@@ -182,15 +182,18 @@ def _mass_properties(body: Body, symbols: Symbols) -> _Properties:
         return symbols.get(body_parameter(body.name, kind, part), number)
 
     numbers = _clean(np.array(body.inertia))
+    parts = [[f"{min(i, j) + 1}{max(i, j) + 1}" for j in range(3)] for i in range(3)]
     inertia = [
-        [
-            given("inertia", f"{min(i, j) + 1}{max(i, j) + 1}", float(numbers[i, j]))
-            for j in range(3)
-        ]
-        for i in range(3)
+        [given("inertia", parts[i][j], float(numbers[i, j])) for j in range(3)] for i in range(3)
     ]
+    mass = given("mass", "", body.mass)
+    open_inertia = any(
+        body_parameter(body.name, "inertia", part) in symbols for row in parts for part in row
+    )
+    if body_parameter(body.name, "mass") in symbols and body.mass > 0 and not open_inertia:
+        inertia = [[mul(x / body.mass, mass) for x in row] for row in inertia]
     com = [given("com", str(k + 1), body.com[k]) for k in range(3)]
-    return _Properties(given("mass", "", body.mass), com, inertia)
+    return _Properties(mass, com, inertia)
 
 
 def _place_of(body: Body, symbols: Symbols) -> Vec:

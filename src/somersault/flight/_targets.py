@@ -5,8 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-import numpy as np
-
 from somersault._core.checks import shown, text
 from somersault._core.errors import SomersaultError
 from somersault.dynamics import parameter_values
@@ -106,14 +104,6 @@ def _of_body(
         if f"bodies.{body}.{what}.{k}" not in parameter_values(model):
             raise SomersaultError(f"{body} is the base, which has no position to vary")
         return (Target((f"bodies.{body}.{what}.{k}",), unit="m"),)
-    own = model.bodies[names.index(body)]
-    if own.mass <= 0:
+    if model.bodies[names.index(body)].mass <= 0:
         raise SomersaultError(f"body {body} has no mass, so none can be varied")
-    inertia = np.asarray(own.inertia)
-    # The same shape, denser: moments of inertia go with the mass.
-    return Target((f"bodies.{body}.mass",), unit="kg"), *(
-        Target((f"bodies.{body}.inertia.{i + 1}{j + 1}",), float(inertia[i, j]) / own.mass)
-        for i in range(3)
-        for j in range(i, 3)
-        if inertia[i, j] != 0
-    )
+    return (Target((f"bodies.{body}.mass",), unit="kg"),)
