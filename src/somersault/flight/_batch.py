@@ -21,7 +21,7 @@ from somersault.engine import MOST_STEPS, Solution
 from somersault.flight._course import Course
 from somersault.flight._plane import check_in_plane
 from somersault.flight._plans import numbers, plans, sound
-from somersault.flight._start import Start, Starts, start, starts
+from somersault.flight._start import Start, Starts, in_si, start, starts
 from somersault.flight._system import System, system
 from somersault.flight._takeoff import Takeoff
 from somersault.flight._tape import Tape, recorded, recorded_each
@@ -77,7 +77,8 @@ class Batch:
         """The flights whose joint torques the motor tape records."""
         assert self.takeoff.tape is not None
         tape = tuple(float(x) for x in self.takeoff.tape)
-        return _nominal(self.model, self.joints, tape, self.duration)
+        joints = in_si(self.joints, self.begun().starts.values)
+        return _nominal(self.model, joints, tape, self.duration)
 
     @cached_property
     def recording(self) -> Tape:

@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
-from somersault.dynamics import Equations, body_kind
-from somersault.flight._plane import kept
+from somersault.dynamics import body_kind
 from somersault.flight._takeoff import Takeoff
 from somersault.flight.behaviours import (
     JointPlan,
     JointTakeoff,
     Sprung,
-    begin,
     check_coupled,
 )
 from somersault.model import Joint, Model, sides
 from somersault.simulation import Name
-from somersault.stability import holding_torques
 
 
 def plans(model: Model, takeoff: Takeoff) -> tuple[JointPlan, ...]:
@@ -33,7 +29,7 @@ def plans(model: Model, takeoff: Takeoff) -> tuple[JointPlan, ...]:
     settled = tuple(_settled(joint, given.get(joint.name)) for joint in model.joints)
     check_coupled(model, settled)
     if any(isinstance(p.does, Sprung) and (p.does.K, p.does.B) != (None, None) for p in settled):
-        return _with_dimensions(model, takeoff, settled)
+        _check_spin(takeoff)
     return settled
 
 
@@ -92,35 +88,10 @@ def _settled(joint: Joint, given: JointTakeoff | None) -> JointPlan:
         raise mistake if named else SomersaultError(f"joint {joint.name}: {mistake}") from None
 
 
-def _with_dimensions(
-    model: Model, takeoff: Takeoff, settled: tuple[JointPlan, ...]
-) -> tuple[JointPlan, ...]:
-    """The same with springs and dampers that are given without dimension in N m."""
-    q, u = (x[0] for x in begin(settled, numbers(takeoff, settled), 1))
-    rate = _spin_rate(model, takeoff, q, u)
-    if not rate:
+def _check_spin(takeoff: Takeoff) -> None:
+    """SomersaultError for a takeoff without a spin of which K and B could be."""
+    given = (takeoff.spin, takeoff.angular_velocity, takeoff.angular_momentum)
+    if not any(np.any(spun) for spun in given if spun is not None):
         raise SomersaultError(
             "K and B are of a nominal spin, and this takeoff has none; give stiffness and damping"
         )
-    inertias = Equations(model).outboard_inertia(q)
-    result = []
-    for plan in settled:
-        does = plan.does
-        if isinstance(does, Sprung):
-            inertia = float(inertias[model.speed_slice(plan.joint.name).start])
-            does = does.scaled(rate**2 * inertia, abs(rate) * inertia)
-        result.append(replace(plan, does=does))
-    return tuple(result)
-
-
-def _spin_rate(model: Model, takeoff: Takeoff, q: Array, u: Array) -> float:
-    """Ω of the nominal spin, rad/s: as given, or the one that has this angular momentum."""
-    if takeoff.spin is not None:
-        return takeoff.spin
-    if takeoff.angular_momentum is not None:
-        h = np.asarray(takeoff.angular_momentum, float)
-    else:
-        omega = np.zeros(3) if takeoff.angular_velocity is None else takeoff.angular_velocity
-        h = Equations(model).momentum(q, np.concatenate([omega, np.zeros(3), u]))[:3]
-    inertia, _ = holding_torques(model, q[None], (), np.empty((1, 0)), compiled=False)
-    return float(np.linalg.norm(kept(model, h)) / inertia[0])

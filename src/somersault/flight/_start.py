@@ -17,7 +17,13 @@ from somersault.attitude import (
 from somersault.flight._plane import kept, turning
 from somersault.flight._system import System
 from somersault.flight._takeoff import Takeoff
-from somersault.flight.behaviours import JointPlan, Sprung, begin, side_by_side
+from somersault.flight.behaviours import (
+    NON_DIMENSIONAL,
+    JointPlan,
+    Sprung,
+    begin,
+    side_by_side,
+)
 from somersault.model import Model
 from somersault.simulation import Name, Numbers
 from somersault.stability import holding_torques
@@ -61,7 +67,7 @@ class Start:
 def start(system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...], one: Starts) -> Start:
     """One takeoff, of the only one there is; SomersaultError for a joint held against no spin."""
     h = momentum(system, one)[0]
-    settled = []
+    held = []
     for plan in plans:
         does = plan.does
         if isinstance(does, Sprung) and does.hold:
@@ -71,10 +77,24 @@ def start(system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...], one: S
                 )
             pretension = np.ravel(one.values["pretension", plan.joint.name])[0]
             does = replace(does, pretension=float(pretension))
-        settled.append(replace(plan, does=does))
+        held.append(replace(plan, does=does))
+    settled = in_si(tuple(held), one.values)
     return Start(
-        one.quaternion[0], one.omega[0], one.q[0], one.u[0], h, one.angles[0], tuple(settled)
+        one.quaternion[0], one.omega[0], one.q[0], one.u[0], h, one.angles[0], settled
     )  # fmt: skip
+
+
+def in_si(plans: tuple[JointPlan, ...], values: Numbers) -> tuple[JointPlan, ...]:
+    """What joints do in one flight, with springs and dampers in SI units."""
+    result = []
+    for plan in plans:
+        does = plan.does
+        if isinstance(does, Sprung):
+            name = plan.joint.name
+            k, b = (float(np.ravel(values[what, name])[0]) for what in ("stiffness", "damping"))
+            does = replace(does, stiffness=k, damping=b, K=None, B=None)
+        result.append(replace(plan, does=does))
+    return tuple(result)
 
 
 def starts(
@@ -101,9 +121,7 @@ def starts(
         rates = side_by_side(values, names, count)
         omega = body_rates(angles, rates, system.model.axes)
     begun = Starts(quaternion, omega, q, u, angles, values, bodies)
-    if any(isinstance(plan.does, Sprung) and plan.does.hold for plan in plans):
-        return replace(begun, values=_pretensioned(system, takeoff, plans, begun))
-    return begun
+    return replace(begun, values=_with_springs(system, takeoff, plans, begun))
 
 
 def momentum(system: System, begun: Starts) -> Array:
@@ -139,14 +157,44 @@ def _speeds(omega: Array, u: Array) -> Array:
     return np.concatenate([omega, np.zeros_like(omega), u], 1)
 
 
-def _pretensioned(
+def _with_springs(
     system: System, takeoff: Takeoff, plans: tuple[JointPlan, ...], begun: Starts
 ) -> Numbers:
-    """The numbers with the torque that balances the nominal spin added to held joints' own.
+    """The numbers with what the nominal spin of each flight decides.
 
-    That is the steady spin of the takeoff pose about its principal axis nearest that of somersault,
-    at the rate asked for, or else at the one that has this angular momentum.
+    Springs and dampers that are given without dimension are added in SI units, and to the
+    pretension of held joints the torque that balances the spin. That is the steady spin of the
+    takeoff pose about its principal axis nearest that of somersault, at the rate asked for, or else
+    at the one that has this angular momentum.
     """
+    values, model = begun.values, system.model
+    held = [p.joint.name for p in plans if isinstance(p.does, Sprung) and p.does.hold]
+    scaled = [name for name in values if name[0] in NON_DIMENSIONAL]
+    if not held and not scaled:
+        return values
+    inertia = torques = np.empty(0)
+    if held or takeoff.spin is None:
+        inertia, torques = _steady(system, begun)
+    if takeoff.spin is not None:
+        rate = np.asarray(values["takeoff", "spin"])
+    else:
+        h = momentum(system, begun)
+        rate = np.sqrt(h[:, 0] ** 2 + h[:, 1] ** 2 + h[:, 2] ** 2) / inertia
+    more: dict[Name, Array] = {}
+    if scaled:
+        outboard = system.equations.outboard_inertia(begun.q, begun.bodies)
+        for what, name in scaled:
+            in_si, power = NON_DIMENSIONAL[str(what)]
+            unit = np.abs(rate) ** power * outboard[:, model.speed_slice(str(name)).start]
+            more[in_si, name] = np.asarray(values[what, name]) * unit
+    for name in held:
+        own = torques[:, model.speed_slice(name).start] * rate**2
+        more["pretension", name] = own + np.asarray(values["pretension", name])
+    return {**values, **more}
+
+
+def _steady(system: System, begun: Starts) -> tuple[Array, Array]:
+    """Inertias and holding torques over Ω² of the steady spins in the poses of the flights."""
     values, q, bodies = begun.values, begun.q, begun.bodies
     shaped = [k for k in values if k[0] in ("angle", "times", "angles") or k[0] in system.bodies]
     if any(isinstance(values[k], np.ndarray) for k in shaped):
@@ -156,20 +204,5 @@ def _pretensioned(
             system.model, q[fresh], system.bodies, bodies[fresh], compiled=True
         )
         same = np.cumsum(fresh) - 1
-        inertia, torques = inertia[same], torques[same]
-    else:  # all in one pose
-        inertia, torques = holding_torques(
-            system.model, q[:1], system.bodies, bodies[:1], compiled=False
-        )
-    if takeoff.spin is not None:
-        rate = np.asarray(values["takeoff", "spin"])
-    else:
-        h = momentum(system, begun)
-        rate = np.sqrt(h[:, 0] ** 2 + h[:, 1] ** 2 + h[:, 2] ** 2) / inertia
-    more: dict[Name, Array] = {}
-    for plan in plans:
-        if isinstance(plan.does, Sprung) and plan.does.hold:
-            name = plan.joint.name
-            own = torques[:, system.model.speed_slice(name).start] * rate**2
-            more["pretension", name] = own + np.asarray(values["pretension", name])
-    return {**values, **more}
+        return inertia[same], torques[same]
+    return holding_torques(system.model, q[:1], system.bodies, bodies[:1], compiled=False)

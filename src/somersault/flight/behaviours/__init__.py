@@ -12,10 +12,11 @@ from somersault.flight.behaviours._locked import Locked
 from somersault.flight.behaviours._moving import Moving, Stopped
 from somersault.flight.behaviours._plan import JointPlan, kinds
 from somersault.flight.behaviours._prescribed import OnPath, Prescribed
-from somersault.flight.behaviours._sprung import Sprung
+from somersault.flight.behaviours._sprung import NON_DIMENSIONAL, Sprung
 from somersault.flight.behaviours._torque import Torque
 
 __all__ = [
+    "NON_DIMENSIONAL",
     "Angle",
     "AsModelled",
     "Compliant",

@@ -19,7 +19,7 @@ class AsModelled(Sprung, motion="as modelled"):
     """
 
     def settled(self, joint: Joint) -> JointTakeoff:
-        springy = joint.stiffness > 0 or self.stiffness is not None or self.K is not None
+        springy = joint.stiffness != 0 or self.stiffness is not None or self.K is not None
         given = {f.name: getattr(self, f.name) for f in fields(self)}
         if springy:
             return JointTakeoff("sprung", **given).settled(joint)

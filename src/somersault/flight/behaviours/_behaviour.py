@@ -121,11 +121,11 @@ class JointTakeoff(metaclass=Registry):
             given = defaults[name] if given is None else given
             value = _declared.checked(where, joint, name, what, given)
             changes[name] = value
-            _declared.note_strange(where, joint, name, what, value)
             if what.least is not None and isinstance(value, float) and value < what.least:
                 raise SomersaultError(
                     f"{where} has the negative {name} {value:g}; give none, or a positive one"
                 )
+            _declared.note_strange(where, joint, name, what, value)
         for one in fields(self):
             if one.type in ("bool", bool):
                 changes[one.name] = truth(f"{where}: {one.name}", getattr(self, one.name))

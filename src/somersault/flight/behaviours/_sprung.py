@@ -13,6 +13,9 @@ from somersault.flight.behaviours._moving import Moving, stretch
 from somersault.model import Joint
 from somersault.simulation import Name, Numbers
 
+# What is given without dimension: which number it is of Ω to which power times I.
+NON_DIMENSIONAL = {"K": ("stiffness", 2), "B": ("damping", 1)}
+
 
 @dataclass(frozen=True)
 class Sprung(Moving, motion="sprung"):
@@ -20,8 +23,8 @@ class Sprung(Moving, motion="sprung"):
 
     The spring is the model's unless it is given: by its `stiffness` (N m/rad, N/m), or without
     dimension by `K` = stiffness / (Ω² I), as the damper by `B` = damping / (Ω I), Ω being the rate
-    of the nominal spin and I the inertia of all that is outboard, about the joint's axis. With
-    `hold` it is pretensioned so that at its takeoff angle it balances the nominal spin.
+    of the flight's nominal spin and I the inertia of all that is outboard, about the joint's axis.
+    With `hold` it is pretensioned so that at its takeoff angle it balances the nominal spin.
     """
 
     stiffness: float | None = _declared.stiffness()
@@ -32,7 +35,7 @@ class Sprung(Moving, motion="sprung"):
 
     def settled(self, joint: Joint) -> JointTakeoff:
         given = self._checked(joint)
-        for name, other in (("K", "stiffness"), ("B", "damping")):
+        for name, (other, _) in NON_DIMENSIONAL.items():
             if getattr(given, name) is not None and getattr(given, other) is not None:
                 raise SomersaultError(
                     f"joint {joint.name} has both {name} and a {other}, which are one thing with "
@@ -54,31 +57,15 @@ class Sprung(Moving, motion="sprung"):
         rest = at if plan.hold else joint.rest if plan.rest is None else plan.rest
         return replace(plan, stiffness=stiffness, rest=rest)
 
-    def scaled(self, stiffness: float, damping: float) -> Sprung:
-        """The same with its spring and damper in SI units, where they are given as `K` and `B`.
-
-        Parameters
-        ----------
-        stiffness : float
-            Ω² I, of which K is a multiple, N m/rad.
-        damping : float
-            Ω I, of which B is a multiple, N m s/rad.
-
-        Returns
-        -------
-        Sprung
-        """
-        k = self.stiffness if self.K is None else self.K * stiffness
-        b = self.damping if self.B is None else self.B * damping
-        return replace(self, stiffness=k, damping=b, K=None, B=None)
-
     def springs(self, joint: Joint) -> tuple[str, ...]:
         return ("stiffness", "rest")
 
     def numbers(self, joint: Joint) -> dict[Name, float | Array]:
         every = super().numbers(joint)
-        fixed = self.hold or joint.kind == "ball"
-        return {n: x for n, x in every.items() if n[0] != "rest" or not fixed}
+        left_out = {"rest"} if self.hold or joint.kind == "ball" else set()
+        left_out |= {"stiffness"} if self.K is not None else set()
+        left_out |= {"damping"} if self.B is not None else set()
+        return {n: x for n, x in every.items() if n[0] not in left_out}
 
     def lasting(self, joint: Joint, values: Numbers, q: Array) -> Array:
         if self.hold:
