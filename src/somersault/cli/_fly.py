@@ -22,7 +22,8 @@ EXAMPLES = """examples:
 
 A SPEC:
   model = "furrer"              # a shipped name or a file; axes = [1, 2, 3] if its x is lateral;
-                                # base = "free" or "planar" to let it go in space or a plane
+                                # base = "free" or "planar" to let it go in space or a plane;
+                                # or [athlete] height = 1.75, mass = 70: see docs/athletes.md
   duration = 5.8                # s
   [takeoff]
   tilt = 0.01                   # rad

@@ -7,17 +7,26 @@ import json
 import math
 import warnings
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from somersault._core.errors import SomersaultError, SomersaultWarning
 
 if TYPE_CHECKING:
     from somersault.model import Joint, Model
 
 NAME = "models"
-HELP = "The models that ship, or what was understood of a file: bodies, joints, masses, notes."
+HELP = "The models that ship, or what was understood of a file; athletes; any model as MJCF."
 EXAMPLES = """examples:
   somersault models
   somersault models my_robot.urdf
-  somersault models my_robot.xml --json"""
+  somersault models my_robot.xml --json
+  somersault models my_robot.urdf --out my_robot.xml
+  somersault models --athlete height=1.75 mass=70 sex=female --out me.xml
+  somersault models --athlete measurements=me.txt --out me.xml
+
+--athlete takes the keys of [athlete] in a SPEC: height (m) and mass (kg), or a file of measurements
+in yeadon's format; sex, densities, shoulders, knees, name: see docs/athletes.md."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -25,24 +34,56 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "models", nargs="*", metavar="MODEL", help="model files or names; none: all that ship"
     )
+    parser.add_argument(
+        "--athlete", nargs="+", metavar="KEY=X", help="an athlete instead of a model that is there"
+    )
+    parser.add_argument(
+        "--out", type=Path, metavar="FILE.xml", help="write the model as MJCF, whatever it was"
+    )
     parser.add_argument("--json", action="store_true", help="print JSON for programs")
 
 
 def run(chosen: argparse.Namespace) -> None:
     """Print the table of what ships, or a page for each model that is named."""
-    from somersault.model import shipped
+    from somersault.model import load, shipped, write_mjcf
 
-    records = [_record(name) for name in chosen.models or shipped()]
+    asked: list[str | Model] = list(chosen.models)
+    if chosen.athlete is not None:
+        asked.append(_athlete(chosen.athlete))
+    if chosen.out is not None and len(asked) != 1:
+        raise SomersaultError(f"--out writes one model, and {len(asked)} are named; name one")
+    records = [_record(one) for one in asked or shipped()]
+    if chosen.out is not None:
+        with warnings.catch_warnings():  # which are notes of the page
+            warnings.simplefilter("ignore", SomersaultWarning)
+            write_mjcf(load(asked[0]), chosen.out)
+        records[0]["written"] = str(chosen.out)
     if chosen.json:
         print(json.dumps(records))
-    elif chosen.models:
+    elif asked:
         print("\n\n".join("\n".join(_page(record)) for record in records))
     else:
         print("\n".join(_table(records)))
 
 
-def _record(name: str) -> dict[str, Any]:
-    from somersault._core.errors import SomersaultWarning
+def _athlete(items: Sequence[str]) -> Model:
+    """The athlete of KEY=X arguments: numbers and truth values as in TOML, and texts."""
+    from somersault.model import AthleteKeys
+    from somersault.spec import structured
+
+    table: dict[str, Any] = {}
+    for item in items:
+        key, equals, text = item.partition("=")
+        if not equals:
+            raise SomersaultError(f"--athlete takes KEY=X, and {item!r} is not that")
+        try:
+            table[key] = float(text)
+        except ValueError:
+            table[key] = {"true": True, "false": False}.get(text, text)
+    return structured(table, AthleteKeys, "athlete.").model()
+
+
+def _record(name: str | Model) -> dict[str, Any]:
     from somersault.model import load
     from somersault.stability import principal_inertias
 
@@ -152,7 +193,8 @@ def _page(record: dict[str, Any]) -> list[str]:
                 for joint in record["joint_details"]
             ],
         )
-    return lines + [f"  note: {note}" for note in record["notes"]]
+    lines += [f"  note: {note}" for note in record["notes"]]
+    return lines + ([f"  written to {record['written']}"] if "written" in record else [])
 
 
 def _range(limits: Sequence[float] | None) -> str:

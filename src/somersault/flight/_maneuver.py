@@ -259,7 +259,8 @@ class Maneuver(Variants):
 
         It flies the same, bit for bit, when it is read again, and by `somersault fly`. A model
         that does not ship with the package is written to the same folder as MJCF, under the same
-        name; a file of that name that is something else stays as it is.
+        name; a file of that name that is something else stays as it is. Frames and inertias that
+        are turned to each other come back from there with another last bit.
 
         Parameters
         ----------

@@ -18,7 +18,7 @@ from somersault._core.errors import SomersaultError
 from somersault.flight._spec_motion import Compliance, OffNominal, Recording
 from somersault.flight._takeoff import Takeoff
 from somersault.flight.behaviours import Angle, JointTakeoff
-from somersault.model import Base, Model, load, mjcf, shipped, write_mjcf
+from somersault.model import AthleteKeys, Base, Model, load, mjcf, shipped, write_mjcf
 from somersault.motion import Path as Quintics
 from somersault.spec import (
     Misplaced,
@@ -39,7 +39,8 @@ _AXES = "1, 2 and 3 in some order (the body's axes of somersault, tilt and twist
 class Keys:
     """The keys of a SPEC of a flight; what is None is as `Maneuver` has it by default."""
 
-    model: str
+    model: str | None = None
+    athlete: AthleteKeys | None = None  # instead of a model
     axes: tuple[int, ...] | None = None
     base: str | None = None  # as `load` takes it
     duration: float | None = None
@@ -73,7 +74,7 @@ def parsed(given: Mapping[str, Any], beside: Path) -> dict[str, Any]:
     if not isinstance(given, Mapping):
         raise SomersaultError(f"a SPEC is a table of keys, and not {shown(given)}")
     keys = structured(_found(given, beside), Keys)
-    body = load(keys.model, keys.axes, cast("Base | None", keys.base))
+    body = load(_body(keys), keys.axes, cast("Base | None", keys.base))
     joints = dict(keys.joints)
     if keys.motion is not None:
         joints = keys.motion.joints(body, keys.duration or 1.0, joints)
@@ -86,6 +87,16 @@ def parsed(given: Mapping[str, Any], beside: Path) -> dict[str, Any]:
         "model": body, "takeoff": takeoff,
         **{name: value for name, value in options.items() if value is not None},
     }  # fmt: skip
+
+
+def _body(keys: Keys) -> str | Model:
+    if keys.model is not None and keys.athlete is not None:
+        raise SomersaultError("a SPEC has a model or an [athlete], and this one has both")
+    if keys.athlete is not None:
+        return keys.athlete.model()
+    if keys.model is None:
+        raise SomersaultError("model is missing; name one, or describe an [athlete]")
+    return keys.model
 
 
 def _found(given: Mapping[str, Any], beside: Path) -> dict[str, Any]:
@@ -101,12 +112,14 @@ def _found(given: Mapping[str, Any], beside: Path) -> dict[str, Any]:
         tables["joints"] = {name: _beside(joint, beside) for name, joint in joints.items()}
     if "motion" in tables:
         tables["motion"] = _beside(tables["motion"], beside)
+    if "athlete" in tables:
+        tables["athlete"] = _beside(tables["athlete"], beside, "measurements")
     return tables
 
 
-def _beside(table: Any, beside: Path) -> Any:
-    if isinstance(table, Mapping) and isinstance(table.get("file"), str):
-        return {**table, "file": str(beside / table["file"])}
+def _beside(table: Any, beside: Path, key: str = "file") -> Any:
+    if isinstance(table, Mapping) and isinstance(table.get(key), str):
+        return {**table, key: str(beside / table[key])}
     return table
 
 

@@ -28,6 +28,7 @@ from somersault.model._skeleton import model_shapes
 from somersault.model._to_mjcf import mjcf, write_mjcf
 from somersault.model._vectors import IDENTITY, ZERO, Matrix, Vector, as_matrix, as_vector
 from somersault.model._weld import merge_welded
+from somersault.model.athlete._keys import AthleteKeys
 from somersault.model.athlete._measured import athlete_from_measurements
 from somersault.model.athlete._poses import named_pose, pose_names
 from somersault.model.athlete._stature import athlete
@@ -38,6 +39,7 @@ __all__ = [
     "IDENTITY",
     "LIMIT_SLACK",
     "ZERO",
+    "AthleteKeys",
     "Base",
     "Body",
     "Follow",
