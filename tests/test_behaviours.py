@@ -94,6 +94,7 @@ def test_samples_may_come_from_a_file(tmp_path: File) -> None:
     file = tmp_path / "torques.csv"
     file.write_text("time [ms],knee [N m],elbow\n0,1,5\n100,2,6\n200,4,7\n")
     does = JointTakeoff.torque(file=file, column="knee")
+    assert (does.file, does.column) == (None, None)  # it holds the samples now
     assert (does.times, does.torques) == ((0.0, 0.1, 0.2), (1.0, 2.0, 4.0))
     for column, said in ((None, "names no column"), ("hip", "'hip'.*knee, elbow")):
         with pytest.raises(SomersaultError, match=said):

@@ -121,7 +121,7 @@ class Simulation(Protocol):
 
     @property
     def specification(self) -> Mapping[str, Any]:
-        """All that decides the numbers, as plain data (`_core.plain`)."""
+        """All that decides the numbers, as plain data (`_core.canonical`)."""
 
     @property
     def values(self) -> Numbers:

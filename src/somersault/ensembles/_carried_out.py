@@ -131,7 +131,7 @@ def _in_memory(
 ) -> Ensemble:  # fmt: skip
     if plan.count * run_bytes(plan) > _MEMORY_BYTES:
         raise SomersaultError(
-            f"{plan.count:,} flights would fill the memory; give --out a Zarr store, MAP.zarr"
+            f"{plan.count:,} flights would fill the memory; write them to a Zarr store, MAP.zarr"
         )
     data, put = empty_dataset(plan, chunks)
     every = list(range(len(chunks)))

@@ -126,7 +126,7 @@ def _carry(
     except KilledWorker:
         raise SomersaultError(
             f"a chunk has killed {_DEATHS} workers at {where}, perhaps for want of memory; give a "
-            "smaller --chunk; what is finished is kept"
+            "smaller chunk; what is finished is kept"
         ) from None
     except SomersaultError:
         raise

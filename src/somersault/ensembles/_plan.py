@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.canonical import canonical
 from somersault._core.checks import by_name, instance, shown, whole_number
 from somersault._core.degrees import note_degrees
 from somersault._core.errors import SomersaultError
-from somersault._core.plain import plain
 from somersault.ensembles import _vary
 from somersault.ensembles._moved import check_apart, moved, moved_by, unit
 from somersault.ensembles._vary import Vary
@@ -202,7 +202,7 @@ def _vary_as_data(vary: Vary) -> Any:
             numbers = np.asarray(given, float)
             digest = hashlib.sha256(numbers.tobytes()).hexdigest()
             listed[key] = numbers.tolist() if numbers.size <= _MOST_LISTED else digest
-    return plain(asdict(vary) | listed)
+    return canonical(asdict(vary) | listed)
 
 
 def plan(

@@ -79,15 +79,15 @@ def _chunks_of(path: Path, plan: Plan, metadata: dict[str, Any]) -> Chunks:
     if theirs != ours:
         key = _difference(theirs, ours)
         raise SomersaultError(
-            f"{path} holds an ensemble of another specification ({key} differs); give another "
-            "--out, or remove it"
+            f"{path} holds an ensemble of another specification ({key} differs); write to "
+            "another place, or remove it"
         )
     begun, now = json.loads(attrs["versions"]), plan.versions
     if begun != now:
         other = ", ".join(f"{name} {v}" for name, v in begun.items() if now.get(name) != v)
         raise SomersaultError(
             f"{path} was begun with {other}, whose last digits may differ; go on with that, or "
-            "give another --out"
+            "write to another place"
         )
     return Chunks(plan.dims, tuple(attrs["chunk"]))
 

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.canonical import canonical
 from somersault._core.checks import name_list
-from somersault._core.plain import plain
 from somersault.flight._batch import Batch
 from somersault.flight._flight import Flight
 from somersault.flight._flown import flown
@@ -67,7 +67,7 @@ class Flights:
     def specification(self) -> dict[str, Any]:
         """All that decides the numbers, as plain data."""
         batch = self.batch
-        joints = {n: {"motion": j.motion, **plain(j)} for n, j in batch.takeoff.joints.items()}
+        joints = {n: {"motion": j.motion, **canonical(j)} for n, j in batch.takeoff.joints.items()}
         return {
             "model": batch.model.name,
             "axes": list(batch.model.axes),
@@ -76,9 +76,9 @@ class Flights:
             "until": batch.until,
             "accuracy": self.accuracy,
             "steps": self.steps,
-            "takeoff": {**plain(batch.takeoff), "joints": joints},
-            "report": plain(self.report),
-            "target": plain(self.target),
+            "takeoff": {**canonical(batch.takeoff), "joints": joints},
+            "report": canonical(self.report),
+            "target": canonical(self.target),
         }
 
     @property

@@ -51,8 +51,8 @@ def refuse_out_of_plane(model: Model, where: str, what: str, value: Any) -> None
         if leaves_plane(model, what, part) and (part is None or abs(number) > rounding) and number:
             raise SomersaultError(
                 f"{where} is {number:g}{_along(what, part)}, but {model.name} moves only in the "
-                f"plane across its axis {model.plane}; leave that out, or load the model with "
-                "base='free'"
+                f"plane across its axis {model.plane}; leave that out, or give the model "
+                'base = "free"'
             )
 
 
@@ -69,5 +69,5 @@ def check_in_plane(model: Model, takeoff: Takeoff, until: str | None) -> None:
     if until is not None and model.plane is not None:
         raise SomersaultError(
             f"until {shown(until)} never comes: {model.name} moves in a plane and does not twist; "
-            "leave it out, or load the model with base='free'"
+            'leave it out, or give the model base = "free"'
         )

@@ -12,14 +12,14 @@ from somersault.flight._flight import Flight
 from somersault.flight._layout import Slot
 
 BROKE_OFF = "the flight broke off"
-_FAR = pi / 2  # rad beyond a limit: what limbs do not do
+_FAR = pi  # rad beyond a limit: what no limb does
 
 
 def note_strange(flight: Flight) -> None:
     """Note why a flight broke off, or joints that went far beyond their limits.
 
-    Limits exert no force, and passive joints pass them by a little in many flights. Far is a
-    quarter turn; of a slide, as far beyond the limit as the limits are apart.
+    Limits exert no force, and passive joints pass them in many flights. Far is half a turn; of a
+    slide, as far beyond the limit as the limits are apart.
 
     Parameters
     ----------

@@ -59,7 +59,7 @@ def _of_takeoff(batch: Batch, path: str, what: str, k: str | None) -> tuple[Targ
     if leaves_plane(batch.model, what, int(k) if k else None):
         raise SomersaultError(
             f"{path} would turn {batch.model.name} out of the plane in which it moves; vary "
-            "something else, or load the model with base='free'"
+            'something else, or give the model base = "free"'
         )
     return (Target(name, unit=_UNITS[what]),)
 

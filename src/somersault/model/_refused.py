@@ -94,8 +94,8 @@ def _check_plane(name: str, free: bool, axes: Axes, plane: int) -> None:
     if axes[0] != plane:
         raise SomersaultError(
             f"{name} moves in the plane across its axis {plane}, so it somersaults about that and "
-            f"not about axis {axes[0]}; give axes that begin with {plane}, or load it with "
-            "base='free'"
+            f"not about axis {axes[0]}; give axes that begin with {plane}, or "
+            'base = "free"'
         )
 
 

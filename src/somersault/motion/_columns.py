@@ -75,7 +75,7 @@ def columns_of(
     if found.others and not ignore_others and not own:
         raise SomersaultError(
             f"it has columns that are no joints of {model.name}: {_list(found.others)}; map them "
-            "with names, or leave them out with ignore_others=True"
+            "with names, or leave them out with ignore_others"
         )
     rows = _led(model, found.rows, found.times, source)
     if not rows:

@@ -90,7 +90,7 @@ def read_motion(
             )
         if said is None and file.suffix.lower() in (".mot", ".sto"):
             raise SomersaultError(
-                "its header does not say inDegrees=yes or no; say degrees=True or False"
+                "its header does not say inDegrees=yes or no; say it with degrees, true or false"
             )
         columns = columns_of(
             table, model, {} if names is None else names, ignore_others, said, file.name

@@ -45,6 +45,11 @@ def check_within(joint: Joint, values: Array, times: Array, slack: float) -> Non
     angle = float(values[worst])
     if joint.kind == "hinge" and largest > 2 * pi:
         mend = "which looks like degrees; say that they are degrees, or convert them"
+    elif slack:  # of a recording, whose noise may take it beyond
+        mend = (
+            f"by more than the slack of {slack:g}; if that is noise give it more slack, or else "
+            "change the motion, or the limits in the model"
+        )
     else:
         mend = "so change the motion, or the limits in the model"
     shown = f"{angle:.6g} {unit}" + (f" ({degrees(angle):.4g}°)" if unit == "rad" else "")

@@ -156,7 +156,7 @@ def or_somersault(model: Model, axis: Axis | str | int | None) -> Axis | str | i
     if model.plane is not None and axis is not None and str(axis) != str(model.plane):
         raise SomersaultError(
             f"{model.name} moves in the plane across its axis {model.plane}, so it spins about no "
-            f"other; leave axis {shown(axis)} out, or load the model with base='free'"
+            f'other; leave axis {shown(axis)} out, or give the model base = "free"'
         )
     return model.axes[0] if axis is None else axis
 

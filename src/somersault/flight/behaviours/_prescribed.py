@@ -45,7 +45,7 @@ class OnPath(JointTakeoff):
             if not isinstance(plan.path, Path):
                 raise SomersaultError(
                     f"{where}: path is {type(plan.path).__name__}, not one joint's path; of a "
-                    "Motion take the joints that so.prescribed() gives"
+                    "Motion take the joints that prescribed gives"
                 )
             if plan.times or plan.angles:
                 raise SomersaultError(f"{where} has both a path and times with angles; give one")

@@ -50,7 +50,8 @@ class Torque(Moving, motion="torque"):
         if len(self.times) or len(self.torques):
             raise SomersaultError(f"torque has both a file {self.file} and samples; give one")
         times, torques = read_column(self.file, self.column)
-        for name, value in (("times", times), ("torques", torques), ("file", None)):
+        read = {"times": times, "torques": torques, "file": None, "column": None}
+        for name, value in read.items():
             object.__setattr__(self, name, value)
 
     def settled(self, joint: Joint) -> JointTakeoff:

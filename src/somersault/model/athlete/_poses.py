@@ -91,7 +91,7 @@ def named_pose(model: str | os.PathLike[str] | Model, name: str) -> dict[str, fl
     if missing := _missing(there):
         raise SomersaultError(
             f"{body.name} has no {missing[0]!r}, so it takes no named pose; use 'gymnast' or "
-            "so.athlete"
+            "an athlete"
         )
     angles = _BENT_TUCK if name == "tuck" and "knee" in there else _POSES[name]
     knee = ("knee",) if "knee" in there else ()

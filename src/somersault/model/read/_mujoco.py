@@ -3,7 +3,6 @@ mean what they mean there."""
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -56,7 +55,7 @@ def read_mjcf(path: Path, base: Base | None = None) -> Model:
     if not on.bodies and bodies:
         raise SomersaultError(
             f"{path.name} has nothing that moves, so nothing can fly; give its body a free joint, "
-            "or load it with base='free'"
+            'or base = "free"'
         )
     if dry:
         note(f"{path.name}: joints' dry friction (frictionloss) is left out: {listed(dry)}")

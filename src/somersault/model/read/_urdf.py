@@ -60,8 +60,8 @@ def read_urdf(path: Path, base: Base | None = None) -> Model:
     on = rooted(path.name, _bodies(file, order, drawn), free, base)
     if not on.bodies:
         raise SomersaultError(
-            f"{path.name} is fixed to the ground as a whole, so nothing can fly; load it with "
-            "base='free'"
+            f"{path.name} is fixed to the ground as a whole, so nothing can fly; give it "
+            'base = "free"'
         )
     for sentence in file.strange.sentences():
         note(f"{path.name}: {sentence}")

@@ -1,4 +1,4 @@
-"""Values as plain data: what is written as JSON, compared and hashed."""
+"""Values in canonical form: what is written as JSON, compared and hashed."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ import numpy as np
 _MOST_LISTED = 1_000  # numbers that are listed one by one
 
 
-def plain(value: Any) -> Any:
+def canonical(value: Any) -> Any:
     """A value as JSON has it, without what was left out: None and empty tuples.
 
     Very many numbers become their SHA-256 digest.
     """
     if is_dataclass(value) and not isinstance(value, type):
-        return plain({field.name: getattr(value, field.name) for field in fields(value)})
+        return canonical({field.name: getattr(value, field.name) for field in fields(value)})
     if isinstance(value, Mapping):
         return {
-            str(name): plain(x)
+            str(name): canonical(x)
             for name, x in value.items()
             if x is not None and not (isinstance(x, tuple) and not x)
         }
@@ -31,5 +31,5 @@ def plain(value: Any) -> Any:
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
     if isinstance(value, list | tuple):
-        return [plain(x) for x in value]
+        return [canonical(x) for x in value]
     return str(value) if isinstance(value, PathLike) else value
