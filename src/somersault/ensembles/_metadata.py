@@ -49,14 +49,14 @@ def read_metadata(path: Path) -> dict[str, Any]:
     if (path / SEAL).is_dir():
         raise DamagedMetadataError(
             f"{path / GROUP} is damaged; run the same ensemble into this store again, which mends "
-            "it, or give another --out"
+            "it, or write to another place"
         )
     if isinstance(known, str) and known.startswith(_FAMILY):
         raise SomersaultError(
             f"{path} was begun by a version of somersault that did not seal its stores; go on "
-            "with that, or give another --out"
+            "with that, or write to another place"
         )
-    raise SomersaultError(f"{path} is there, but is no ensemble; give another --out")
+    raise SomersaultError(f"{path} is there, but is no ensemble; write to another place")
 
 
 def arrays_of(metadata: dict[str, Any]) -> dict[str, Any]:

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from somersault._core.canonical import canonical
 from somersault._core.datasets import netcdf
 from somersault._core.errors import SomersaultError
 from somersault._core.files import write
-from somersault._core.plain import plain
 from somersault.ensembles._labels import FORMAT
 
 if TYPE_CHECKING:
@@ -58,7 +58,8 @@ def _digest(data: xr.Dataset) -> str:
 def _attributes(said: Mapping[Any, Any]) -> dict[str, Any]:
     """Attributes as NetCDF has them, which cannot tell a row of one from the one."""
     return {
-        name: x[0] if isinstance(x, list) and len(x) == 1 else x for name, x in plain(said).items()
+        name: x[0] if isinstance(x, list) and len(x) == 1 else x
+        for name, x in canonical(said).items()
     }
 
 

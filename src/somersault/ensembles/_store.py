@@ -101,7 +101,7 @@ def _surviving_chunks(path: Path, plan: Plan) -> Chunks:
             return chunks
     raise SomersaultError(
         f"{path / GROUP} is damaged, and nothing else shows that {path} is of this specification; "
-        "give another --out, or remove it"
+        "write to another place, or remove it"
     )
 
 
