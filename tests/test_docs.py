@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+from dataclasses import fields
 from pathlib import Path
 from types import ModuleType
 
@@ -41,3 +42,21 @@ def test_every_room_has_a_page_of_reference() -> None:
     assert rooms
     for room in rooms:
         assert f"::: somersault.{room}" in shown
+
+
+def test_every_key_of_a_spec_is_in_the_documentation() -> None:
+    """As code: in backticks, or in a block."""
+    from somersault.ensembles._spec import Reported, Sample, Tables
+    from somersault.flight._spec import Keys
+    from somersault.flight._spec_motion import Compliance, OffNominal, Recording
+    from somersault.flight.behaviours._registry import Registry
+    from somersault.model import AthleteKeys
+
+    text = "\n".join(page.read_text(encoding="utf-8") for page in DOCS.glob("*.md"))
+    code = re.findall(r"```.*?```|`[^`\n]*`|^    .*$", text, re.DOTALL | re.MULTILINE)
+    words = set(re.findall(r"\w+", " ".join(code)))
+    ours = [kind for kind in Registry.classes.values() if kind.__module__.startswith("somersault.")]
+    tables = [Keys, Tables, Sample, Reported, Recording, Compliance, OffNominal, AthleteKeys]
+    for table in (*tables, somersault.Takeoff, somersault.Vary, *ours):
+        keys = {field.name for field in fields(table) if field.init}
+        assert keys <= words, (table.__name__, keys - words)
