@@ -227,7 +227,7 @@ def test_a_scheduler_that_is_not_there(
     address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
-    monkeypatch.setattr("somersault.ensembles._cluster._PATIENCE", 1.0)
+    monkeypatch.setattr("somersault.ensembles._scheduler._PATIENCE", 1.0)
     refused(capsys, spec(tmp_path), "scheduler", address, more=("--scheduler", address))
 
 
@@ -267,7 +267,7 @@ def test_a_store_of_another_specification(
 
 def test_too_much_for_one_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     parts = {"sample": "[sample]\nsize = 50000000\n"}
-    refused(capsys, spec(tmp_path, **parts), "--out", more=("--out", str(tmp_path / "map.nc")))
+    refused(capsys, spec(tmp_path, **parts), "Zarr store", more=("--out", str(tmp_path / "map.nc")))
 
 
 def test_a_spec_that_is_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -58,8 +58,8 @@ def on_cluster(
     }
     with dask.config.set(quiet), unlogged():
         if scheduler is not None:
-            note_open_door(scheduler)
             with connected(scheduler, security) as client:
+                note_open_door(scheduler)
                 _carry(client, plan, chunks, left, put, advance, file, threads, scheduler)
             return
         assert workers is not None
