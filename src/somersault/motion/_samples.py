@@ -184,8 +184,8 @@ def low_pass(samples: Array, rate: float, cutoff: float) -> Array:
     if not rate * _SLOWEST_CUTOFF <= cutoff < rate / 2:
         raise SomersaultError(
             f"samples at {rate:.4g} Hz cannot be filtered at {cutoff:g} Hz; give a cutoff from "
-            f"{rate * _SLOWEST_CUTOFF:.4g} to {rate / 2:.4g}, or none to filter nothing (0 in a SPEC), and see that "
-            "times are in seconds"
+            f"{rate * _SLOWEST_CUTOFF:.4g} to {rate / 2:.4g}, or none to filter nothing (0 in a "
+            "SPEC), and see that times are in seconds"
         )
     once = np.tan(np.pi * cutoff / rate) / (2 ** (1 / _PASSES) - 1) ** 0.25
     sections = butter(2, np.arctan(once) * rate / np.pi, fs=rate, output="sos")
