@@ -6,6 +6,7 @@ together with what uses it.
 
 from __future__ import annotations
 
+import subprocess
 from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
@@ -39,6 +40,18 @@ def furrer() -> so.Model:
 @cache
 def gymnast() -> so.Model:
     return so.load("gymnast")
+
+
+def pem() -> str:
+    """A file with a certificate and its key."""
+    subprocess.run(
+        ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-subj", "/CN=me", "-keyout",
+         "key.pem", "-out", "cert.pem"],
+        check=True, capture_output=True,
+    )  # fmt: skip
+    both = Path("key.pem").read_text() + Path("cert.pem").read_text()
+    Path("both.pem").write_text(both)
+    return "both.pem"
 
 
 @cache
@@ -405,6 +418,7 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
             "name": "athlete",
         },
     ),
+    "model.AthleteKeys": lambda: (model.AthleteKeys, {"height": 1.7, "mass": 65.0}),
     "model.base_on_its_joints": lambda: (model.base_on_its_joints, {"model": furrer()}),
     "model.body_frames": lambda: (model.body_frames, {"model": furrer(), "q": [0.1, 0.2]}),
     "model.body_velocities": lambda: (
@@ -802,6 +816,7 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
         }.items()
     },
     "ensembles.Vary.quantile": lambda: (NORMAL.quantile, {"u": np.array([0.1, 0.5])}),
+    "ensembles.tls_files": lambda: (ensembles.tls_files, dict.fromkeys(("ca", "cert"), pem())),
     "ensembles.Ensemble.fraction": lambda: (
         scattered().fraction,
         {"tolerance": 0.1, "over": "sample", "confidence": 0.95},

@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from somersault._core.checks import shown
+from somersault._core.checks import file_path, shown
 from somersault._core.errors import SomersaultError
 from somersault._core.notes import note
 
@@ -56,8 +56,12 @@ def tls_files(
     """
     from distributed.security import Security
 
-    files = {"tls_ca_file": ca, "tls_client_cert": cert, "tls_client_key": key}
-    given = {name: os.fspath(file) for name, file in files.items() if file is not None}
+    given = {
+        "tls_ca_file": str(file_path("ca", ca)),
+        "tls_client_cert": str(file_path("cert", cert)),
+    }
+    if key is not None:
+        given["tls_client_key"] = str(file_path("key", key))
     for file in given.values():
         if not os.path.isfile(file):
             raise SomersaultError(f"there is no certificate or key file {file!r}; check the path")
