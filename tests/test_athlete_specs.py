@@ -157,7 +157,7 @@ def osim(folder: Path) -> Path:
     [
         (["furrer", "book", "--out", "x.xml"], "--out writes one model, and 2 are named"),
         (["--out", "x.xml"], "and 0 are named"),
-        (["furrer", "--out", "x.urdf"], "MJCF is written as .xml or .mjcf"),
+        (["furrer", "--out", "x.urdf"], "has another ending than .xml or .mjcf"),
         (["--athlete", "height"], "takes KEY=X"),
         (["--athlete", "hight=1.75", "mass=70"], "athlete.hight is no key"),
     ],
