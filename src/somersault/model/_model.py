@@ -6,7 +6,6 @@ A `Model` is a value: it is read once, never changed, and knows nothing of motio
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any
@@ -14,11 +13,11 @@ from typing import Any
 import numpy as np
 
 from somersault._core.checks import shown, text
-from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.errors import SomersaultError
+from somersault._core.notes import listed, note
 from somersault.attitude import AXES, Axes, as_axes
 from somersault.model._bodies import Body, Follow, Joint, coordinate_names, speed_names
 from somersault.model._refused import check
-from somersault.model._strange import listed
 from somersault.model.shapes import Mesh, Shape
 
 _MOST_TRIANGLES = 4_000_000  # of one model, beyond which no file is read
@@ -125,7 +124,7 @@ class Model:
             rows.append(tuple(row))
         if left_out:
             what = listed(list(dict.fromkeys(left_out)))
-            warnings.warn(f"{self.name}: shapes left out: {what}", SomersaultWarning, stacklevel=2)
+            note(f"{self.name}: shapes left out: {what}")
         return tuple(rows)
 
     @cached_property
