@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import somersault as so
+from somersault._core import limited
 from somersault.model.read import _apart
 
 WORLD = (
@@ -51,12 +52,12 @@ def test_room_for_a_simulation_is_none_that_is_taken(size: str, tmp_path: Path) 
     assert so.load(written(tmp_path, f"<size {size}/>")) == so.load(written(tmp_path))
 
 
-@pytest.mark.parametrize("limit", ["_SECONDS", "_WAIT"])
+@pytest.mark.parametrize("limit", ["SECONDS", "WAIT"])
 def test_what_repeats_without_end_is_refused(
     limit: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """By the processor's time or by the clock, whichever is up first."""
-    monkeypatch.setattr(_apart, limit, 2)
+    monkeypatch.setattr(limited, limit, 2)
     with pytest.raises(so.SomersaultError, match=r"^robot\.xml takes more than"):
         so.load(written(tmp_path, inside=ENDLESS))
 

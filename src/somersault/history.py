@@ -16,6 +16,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.checks import file_path, instance
 from somersault._core.errors import SomersaultError
+from somersault._core.hdf5 import require_readable
 from somersault._core.numbers import floats
 from somersault.attitude import unwrapped_angles
 from somersault.model import Model
@@ -198,12 +199,11 @@ def read_recording(path: str | os.PathLike[str], model: Model) -> Recording:
 def _opened(file: Path) -> dict[str, Any]:
     """The variables of a flight's NetCDF file, and the names of its `joint` coordinates.
 
-    They are read as plain HDF5: where dimension scales are damaged, HDF5 goes round in circles.
+    They are read as plain HDF5, which minds damaged dimension scales less.
     """
     import h5py
 
-    if not os.path.isfile(file):
-        raise SomersaultError(f"there is no file {str(file)!r}; check the path")
+    require_readable(file)
     try:
         with h5py.File(file) as data:
             missing = [name for name in (*_VARIABLES, "time", "joint") if name not in data]

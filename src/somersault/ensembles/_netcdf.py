@@ -14,6 +14,7 @@ from somersault._core.canonical import canonical
 from somersault._core.datasets import netcdf
 from somersault._core.errors import SomersaultError
 from somersault._core.files import write
+from somersault._core.hdf5 import require_readable
 from somersault.ensembles._labels import FORMAT
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ def read(path: Path) -> xr.Dataset:
     """The ensemble of a file; SomersaultError for one that is none, or is not what was written."""
     import xarray as xr
 
+    require_readable(path)
     try:
         with xr.open_dataset(path, engine="h5netcdf") as file:
             data = file.load()
@@ -39,7 +41,8 @@ def read(path: Path) -> xr.Dataset:
             f"{path} is there, but is no ensemble of this version of somersault, or is damaged; "
             "run the ensemble again"
         )
-    if data.attrs.pop("digest", None) != _digest(data):
+    said = data.attrs.pop("digest", None)  # which a dataset saved by xarray does not have
+    if said is not None and said != _digest(data):
         raise SomersaultError(f"{path} is not what was written; run the ensemble again")
     return data
 

@@ -11,20 +11,16 @@ import json
 import os
 import re
 import stat
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from somersault._core import limited
 from somersault._core.errors import SomersaultError
 from somersault.model.read import _compiled
 from somersault.model.read._compiled import REFUSALS, compile_file
 from somersault.model.read._xml import Element, read_xml
 
-_SECONDS = 20  # of one processor
-_WAIT = 60  # s, where the machine has much else to do
-_MORE_BYTES = 2**31  # above what MuJoCo itself takes
 _SHORT = 2**16  # bytes
 _HARMLESS = {
     "mujoco", "compiler", "option", "flag", "default", "worldbody", "body", "frame", "freejoint",
@@ -75,21 +71,8 @@ def _is_harmless(root: Element) -> bool:
 def _apart(path: Path) -> tuple[Any, list[bool]]:
     import mujoco
 
-    program = [sys.executable, "-P", _compiled.__file__, os.path.abspath(path)]
-    limits = [str(limit) for limit in (_SECONDS, _WAIT, _MORE_BYTES)]
-    alike = {
-        "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
-        "OPENBLAS_NUM_THREADS": "1",  # threads and arenas of many cores would count as memory
-        "MALLOC_ARENA_MAX": "2",
-    }
-    try:
-        done = subprocess.run(
-            program + limits, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL, env=os.environ | alike, timeout=_WAIT, check=False,
-        )  # fmt: skip
-    except subprocess.TimeoutExpired:
-        raise SomersaultError(_too_long(path)) from None
-    head, _, binary = done.stdout.partition(b"\n")
+    said = limited.answer(_compiled.__file__, os.path.abspath(path))
+    head, _, binary = said.partition(b"\n")
     if not head:  # it was ended by one of its limits
         raise SomersaultError(_too_long(path))
     answer = json.loads(head)
@@ -104,8 +87,8 @@ def _refusal(path: Path, said: str) -> SomersaultError:
     """What MuJoCo says of a file, in a sentence."""
     if _NO_MEMORY.search(said):
         return SomersaultError(
-            f"{path.name} asks for more than {_MORE_BYTES / 2**30:g} GB of memory, which no model "
-            "needs; correct the numbers in it"
+            f"{path.name} asks for more than {limited.MORE_BYTES / 2**30:g} GB of memory, "
+            "which no model needs; correct the numbers in it"
         )
     text = re.sub(r"\s+", " ", said).strip().rstrip(".")
     for theirs, ours in _PLAINER.items():
@@ -118,8 +101,8 @@ def _refusal(path: Path, said: str) -> SomersaultError:
 
 def _too_long(path: Path) -> str:
     return (
-        f"{path.name} takes more than {_SECONDS} s to read, or more memory than a model gets; make "
-        "what it repeats or fills smaller"
+        f"{path.name} takes more than {limited.SECONDS} s to read, or more memory than a model "
+        "gets; make what it repeats or fills smaller"
     )
 
 

@@ -1,17 +1,18 @@
 """A model file compiled by MuJoCo: here, or as a process that can be given limits.
 
 Run as a program with a file and limits it writes what the file holds to its standard output, one
-line of JSON and then MuJoCo's own binary model. It stands by itself, so that it starts soon.
+line of JSON and then MuJoCo's own binary model. It imports little, so that it starts soon.
 """
 
 from __future__ import annotations
 
 import json
 import os
-import signal
 import sys
 import warnings
 from typing import Any
+
+from somersault._core.limited import limit
 
 REFUSALS = (ValueError, RuntimeError, OSError, AttributeError)
 MOST_COMPILED = 2**29  # bytes of what is handed back
@@ -49,31 +50,11 @@ def _from_shapes(spec: Any) -> list[bool]:
     ]
 
 
-def _limit(seconds: int, wait: int, more_bytes: int) -> None:
-    """End this process by itself: after so much time, at an interrupt, and with its parent."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # MuJoCo would not come back to Python for it
-    if hasattr(signal, "alarm"):
-        signal.signal(signal.SIGALRM, signal.SIG_DFL)
-        signal.alarm(wait)
-    try:
-        import resource
-    except ImportError:  # Windows: the parent's clock alone
-        return
-    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
-    if sys.platform == "linux":
-        import ctypes
-
-        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
-        with open("/proc/self/statm") as file:
-            most = int(file.read().split()[0]) * resource.getpagesize() + more_bytes
-        resource.setrlimit(resource.RLIMIT_AS, (most, most))
-
-
-def _main(path: str, seconds: str, wait: str, more_bytes: str) -> None:
+def _main(path: str, *limits: str) -> None:
     import mujoco
     import numpy as np
 
-    _limit(int(seconds), int(wait), int(more_bytes))
+    limit(*limits)
     with os.fdopen(os.dup(1), "wb") as out:
         silent = os.open(os.devnull, os.O_WRONLY)
         os.dup2(silent, 1)  # what libraries print is no part of the answer
