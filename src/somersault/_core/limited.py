@@ -11,6 +11,8 @@ import signal
 import subprocess
 import sys
 
+from somersault._core.stages import stage
+
 SECONDS = 20  # of one processor
 WAIT = 60  # s, where the machine has much else to do
 MORE_BYTES = 2**31  # above what the process takes before it reads
@@ -28,11 +30,12 @@ def answer(program: str, *arguments: str) -> bytes:
         "MALLOC_ARENA_MAX": "2",
     }
     try:
-        done = subprocess.run(
-            [sys.executable, "-P", program, *arguments, *limits], stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=os.environ | alike,
-            timeout=WAIT, check=False,
-        )  # fmt: skip
+        with stage("reading"):
+            done = subprocess.run(
+                [sys.executable, "-P", program, *arguments, *limits], stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=os.environ | alike,
+                timeout=WAIT, check=False,
+            )  # fmt: skip
     except subprocess.TimeoutExpired:
         return b""
     return done.stdout

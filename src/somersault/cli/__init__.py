@@ -16,6 +16,7 @@ from collections.abc import Iterable, Sequence
 from typing import NoReturn, TextIO
 
 from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault._core.stages import told, wipe
 from somersault.cli import _ensemble, _equations, _fly, _map, _models, _reproduce, _stability
 
 _COMMANDS = (_models, _stability, _map, _fly, _ensemble, _equations, _reproduce)
@@ -89,7 +90,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             warnings.simplefilter("default", SomersaultWarning)
             warnings.showwarning = _note
             chosen = _parser().parse_args(arguments)
-            chosen.run(chosen)
+            with told():
+                chosen.run(chosen)
             if sys.stdout is not None:
                 sys.stdout.flush()  # what cannot be written is found out here
     except SomersaultError as mistake:
@@ -142,4 +144,5 @@ def _note(
     line: str | None = None,
 ) -> None:
     if issubclass(category, SomersaultWarning):
+        wipe()
         print(f"note: {message}", file=sys.stderr)

@@ -7,6 +7,8 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
+from somersault._core.stages import stage
+
 _ROUNDING = ("fma", "fma4", "avx2", "avx512f", "neon", "sve")  # as LLVM calls them
 
 
@@ -34,11 +36,12 @@ def compiled(*modules: str) -> Any:
         opt=2,
         jit=True,
     )
-    whole, *others = [llvm.parse_assembly(text) for text in modules]
-    for other in others:
-        whole.link_in(other)
-    engine = llvm.create_mcjit_compiler(whole, machine)
-    engine.finalize_object()
+    with stage("compiling"):
+        whole, *others = [llvm.parse_assembly(text) for text in modules]
+        for other in others:
+            whole.link_in(other)
+        engine = llvm.create_mcjit_compiler(whole, machine)
+        engine.finalize_object()
     return engine
 
 

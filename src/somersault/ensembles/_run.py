@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from itertools import islice
 
 from somersault._core.array import Array
+from somersault._core.stages import stage
 from somersault.engine import Stop, cores, use_threads
 from somersault.ensembles._chunks import Chunks
 from somersault.ensembles._plan import Plan
@@ -94,7 +95,7 @@ def progress_bar(total: int, done: int, shown: bool) -> Iterator[Advance]:
         def render(self, task: Task) -> Text:
             return Text(f"{task.speed:,.0f} flights/s" if task.speed else "")
 
-    with Progress(
+    with stage(""), Progress(
         TextColumn("{task.completed:,.0f} of {task.total:,.0f} flights"), BarColumn(), Rate(),
         TimeRemainingColumn(), console=Console(stderr=True), transient=True,
     ) as bar:  # fmt: skip

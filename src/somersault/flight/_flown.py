@@ -6,6 +6,7 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
+from somersault._core.stages import stage
 from somersault.attitude import SINGULAR, Axes, angles_from_quaternion, cayley_klein
 from somersault.engine import STATUS
 from somersault.flight._batch import Batch, Begun
@@ -35,7 +36,8 @@ def flown(
     most = _MOST_BYTES // _point_bytes(batch)
     points = _first_points(batch.system, begun.start, np.union1d(times, [0.0, duration]), most)
     for _ in range(_MOST_REFINEMENTS):
-        solution = begun.solve(points, accuracy, steps + _STEPS_A_POINT * len(points))
+        with stage(f"flying {duration:g} s"):
+            solution = begun.solve(points, accuracy, steps + _STEPS_A_POINT * len(points))
         end, status = float(solution.end[0]), float(solution.status[0])
         before = points < end
         states = np.concatenate([solution.states[0][before], solution.final])

@@ -14,6 +14,7 @@ from somersault._core.errors import SomersaultError
 from somersault._core.files import temporary_folder, write
 from somersault._core.interrupts import unbroken
 from somersault._core.places import check_folder
+from somersault._core.stages import stage
 from somersault.thesis._claims import Claim
 from somersault.thesis._entries import Entry, Result, Table, select
 from somersault.thesis._errata import ERRATA
@@ -120,7 +121,7 @@ def _watched(entries: Sequence[Entry], progress: bool) -> Iterable[Entry]:
     from rich.progress import TimeElapsedColumn as Elapsed
 
     columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), Elapsed()
-    with Progress(*columns, console=Console(stderr=True), disable=not progress) as bar:
+    with stage(""), Progress(*columns, console=Console(stderr=True), disable=not progress) as bar:
         task = bar.add_task("starting", total=len(entries))
         for entry in entries:
             bar.update(task, description=entry.title)

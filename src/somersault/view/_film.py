@@ -15,6 +15,7 @@ from somersault._core.errors import SomersaultError
 from somersault._core.files import write
 from somersault._core.numbers import number
 from somersault._core.places import check_file
+from somersault._core.stages import stage
 from somersault.view._encoders import ENCODERS
 from somersault.view._look import look_of, several
 from somersault.view._scene import Scene
@@ -78,8 +79,10 @@ def film(
     note = "" if speed == 1 else f"   (speed × {speed:.3g})"
     scene = Scene(shown_, moments, chosen, note)
     encoder = kind(chosen.size, fps)
-    for k in range(len(moments)):
-        encoder.add(scene.frame(k))
+    with stage("drawing the film, frame", len(moments)) as drawing:
+        for k in range(len(moments)):
+            encoder.add(scene.frame(k))
+            drawing.advance()
     write(file, encoder.finished())
 
 
