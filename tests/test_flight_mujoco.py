@@ -22,7 +22,7 @@ from trees import InMujoco, State, mujoco_addresses, random_tree, to_mujoco, uni
 
 from somersault.attitude import matrix_from_quaternion, quaternion_conjugate, quaternion_product
 from somersault.flight import Flight, JointTakeoff, Takeoff, fly
-from somersault.model import Body, Joint, Model, as_matrix, as_vector, load, shipped
+from somersault.model import Joint, Model, as_matrix, as_vector, load, shipped
 
 SECONDS = 2.0
 STEP = 1e-3  # s; halved until what Runge–Kutta misses by is a tenth of WITHIN
@@ -52,17 +52,11 @@ def ours(flight: Flight) -> End:
 
 
 @dataclass(frozen=True)
-class Tree:
-    """Bodies as `to_mujoco` takes them: unlike in a Model, some may have no joint."""
+class Tree(Model):
+    """Bodies as MJCF has them: unlike in other models, some may have no joint."""
 
-    free: bool
-    bodies: tuple[Body, ...]
-    name: str = "tree"
-    plane: None = None
-
-    @property
-    def joints(self) -> tuple[Joint, ...]:
-        return tuple(joint for body in self.bodies for joint in body.joints)
+    def __post_init__(self) -> None:
+        """Nothing is refused."""
 
 
 def theirs(model: Tree, flight: Flight, step: float) -> End:
@@ -140,7 +134,7 @@ def welded(model: Tree | Model, flight: Flight, names: set[str]) -> Tree:
         else:
             assert kept == body.joints, f"body {number} is locked in part only"
         bodies.append(replace(body, joints=kept))
-    return Tree(model.free, tuple(bodies))
+    return Tree("tree", model.free, tuple(bodies))
 
 
 def with_springs(model: Model, given: Mapping[str, JointTakeoff]) -> Tree:
@@ -156,6 +150,7 @@ def with_springs(model: Model, given: Mapping[str, JointTakeoff]) -> Tree:
         return replace(joint, **values)
 
     return Tree(
+        "tree",
         model.free,
         tuple(replace(b, joints=tuple(own(j) for j in b.joints)) for b in model.bodies),
     )

@@ -10,13 +10,14 @@ import numpy as np
 from somersault._core.notes import note
 
 _TURN = 2 * math.pi
+MOST_TURNS = 4  # that a body may well make in a flight
 _ROUND = 0.5  # degrees are written as multiples of it, radians beyond a turn hardly ever
 
 
-def look_like_degrees(angles: Any) -> bool:
-    """Whether angles in rad reach beyond a turn and are all as round as degrees are."""
+def look_like_degrees(angles: Any, turns: int = 1) -> bool:
+    """Whether angles in rad reach beyond some turns and are all as round as degrees are."""
     sizes = np.abs(np.asarray(angles, float))
-    beyond = sizes.max(initial=0.0) > _TURN
+    beyond = sizes.max(initial=0.0) > turns * _TURN
     return bool(beyond and np.all(sizes % _ROUND == 0))
 
 
@@ -27,9 +28,12 @@ def degrees_hint(angle: float) -> str:
     return f" (angles are in rad, and {angle:g}° are {math.radians(angle):.4g} rad)"
 
 
-def note_degrees(what: str, angles: Any) -> None:
-    """Note accepted angles in rad, called `what`, that look like degrees."""
-    if look_like_degrees(angles):
+def note_degrees(what: str, angles: Any, turns: int = 1) -> None:
+    """Note accepted angles in rad, called `what`, that look like degrees.
+
+    What may well make `turns` turns and be a round number is not noted.
+    """
+    if look_like_degrees(angles, turns):
         row = np.ravel(angles)
         angle = float(row[np.argmax(np.abs(row))])
         note(

@@ -12,7 +12,7 @@ import os
 import re
 import sys
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import NoReturn, TextIO
 
 from somersault._core.errors import SomersaultError, SomersaultWarning
@@ -88,7 +88,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("default", SomersaultWarning)
-            warnings.showwarning = _note
+            warnings.showwarning = _notes()
             chosen = _parser().parse_args(arguments)
             with told():
                 chosen.run(chosen)
@@ -135,14 +135,21 @@ def _bytes_of_name(error: UnicodeError) -> tuple[str | bytes, int]:
         return codecs.lookup_error("backslashreplace")(error)
 
 
-def _note(
-    message: Warning | str,
-    category: type[Warning],
-    filename: str,
-    lineno: int,
-    file: TextIO | None = None,
-    line: str | None = None,
-) -> None:
-    if issubclass(category, SomersaultWarning):
-        wipe()
-        print(f"note: {message}", file=sys.stderr)
+def _notes() -> Callable[..., None]:
+    """What prints warnings of ours, each sentence once, whoever forgot that it was given."""
+    given: set[str] = set()
+
+    def show(
+        message: Warning | str,
+        category: type[Warning],
+        filename: str,
+        lineno: int,
+        file: TextIO | None = None,
+        line: str | None = None,
+    ) -> None:
+        if issubclass(category, SomersaultWarning) and str(message) not in given:
+            given.add(str(message))
+            wipe()
+            print(f"note: {message}", file=sys.stderr)
+
+    return show

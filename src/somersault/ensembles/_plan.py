@@ -17,7 +17,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.canonical import canonical
 from somersault._core.checks import by_name, instance, shown, whole_number
-from somersault._core.degrees import note_degrees
+from somersault._core.degrees import MOST_TURNS, note_degrees
 from somersault._core.errors import SomersaultError
 from somersault.ensembles import _vary
 from somersault.ensembles._moved import check_apart, moved, moved_by, unit
@@ -268,7 +268,9 @@ def plan(
     _check_sample(planned)
     for name, quantity in planned.vary.items():
         if quantity.unit == "rad":
-            note_degrees(f"vary.{name}", _vary.written(quantity))
+            turning = any({"somersault", "twist"} & {*target.name} for target in targets[name])
+            most = MOST_TURNS if turning else 1
+            note_degrees(f"vary.{name}", _vary.written(quantity), most)
     if planned.count > MOST_RUNS:
         shape = " x ".join(f"{n} {length}" for n, length in planned.dims.items())
         raise SomersaultError(

@@ -9,7 +9,7 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.checks import by_name, instance, name_list, whole_number
-from somersault._core.degrees import note_degrees
+from somersault._core.degrees import MOST_TURNS, note_degrees
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import floats, number
 from somersault.engine import STATUS
@@ -131,13 +131,17 @@ def landing_error(target: Mapping[str, float], landed: Mapping[str, Array | floa
     -------
     array, () or (N,)
 
+    Raises
+    ------
+    SomersaultError
+        Where the landing says nothing of what the target names.
+
     Examples
     --------
     >>> from somersault.flight import landing_error
     >>> float(landing_error({"tilt": 0.0, "twist": 3.0}, {"tilt": 0.0, "twist": 3.5}))
     0.25
     """
-
     target, landed = by_name("target", target), by_name("landed", landed)
     for name in target:
         if name not in landed:
@@ -174,7 +178,7 @@ def check(report: Report, target: Mapping[str, float], model: Model) -> None:
     slides = {joint.name for joint in model.joints if joint.kind == "slide"}
     for name, angle in target.items():
         if name not in slides:
-            note_degrees(f"target.{name}", angle)
+            note_degrees(f"target.{name}", angle, MOST_TURNS)
     if LANDING_ERROR in report.quantities and not target:
         raise SomersaultError(
             "report.quantities has landing_error, which needs a target; give angles to land "

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from somersault._core.checks import by_name, instance
-from somersault._core.degrees import note_degrees
+from somersault._core.degrees import MOST_TURNS, note_degrees
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import MOST, number, numbers
 from somersault.flight.behaviours import JointTakeoff
@@ -76,8 +76,8 @@ class Takeoff:
             instance(f"takeoff of joint {name}", joint, JointTakeoff)
         for name in ("somersault", "tilt", "twist", "tilt_rate", "twist_rate"):
             number(f"takeoff {name}", getattr(self, name))
-        for name in ("somersault", "tilt", "twist"):
-            note_degrees(f"takeoff {name}", getattr(self, name))
+        for name, turns in (("somersault", MOST_TURNS), ("tilt", 1), ("twist", MOST_TURNS)):
+            note_degrees(f"takeoff {name}", getattr(self, name), turns)
         for name, size in (
             ("quaternion", 4),
             ("angular_velocity", 3),
