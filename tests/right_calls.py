@@ -15,7 +15,18 @@ from typing import Any
 import numpy as np
 
 import somersault as so
-from somersault import attitude, ensembles, flight, model, motion, rigid, spec, thesis, view
+from somersault import (
+    attitude,
+    ensembles,
+    flight,
+    model,
+    motion,
+    rigid,
+    robot,
+    spec,
+    thesis,
+    view,
+)
 from somersault import dynamics as dy
 from somersault import stability as st
 
@@ -164,6 +175,7 @@ def files() -> None:
     Path("main.toml").write_text(
         'model = "furrer"\nduration = 0.1\n[takeoff]\nspin = 5.0\n', encoding="utf-8"
     )
+    Path("run.toml").write_text('robot = "biped"\n', encoding="utf-8")
     flown().save("recorded.nc")
     scattered().dataset.to_netcdf("store.nc", engine="h5netcdf")
 
@@ -209,6 +221,27 @@ def _vary(**given: Any) -> Any:
 
 def _report(**given: Any) -> Any:
     return flight.flights("furrer", TAKEOFF, 0.02, report=so.Report(**given)).variables
+
+
+@cache
+def ran() -> robot.Run:
+    return robot.run("biped", 0.6)
+
+
+def _table(name: str) -> Callable[[], tuple[Call, Right]]:
+    """A table of a run's numbers, together with what uses it."""
+    kind = getattr(robot, name)
+    return lambda: (
+        lambda **given: robot.Control(**{name.lower(): kind(**given)}), vars(kind()),
+    )  # fmt: skip
+
+
+def _runs(**given: Any) -> Any:
+    return robot.Runs(robot.Robot(**given), duration=0.05).controller
+
+
+def _leg(**given: Any) -> Any:
+    return _runs(left=robot.Leg(**given))
 
 
 def _prop(**given: Any) -> Any:
@@ -1057,6 +1090,53 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     "view.root_loci": lambda: (view.root_loci, {"loci": locus()}),
     "view.stability_chart": lambda: (view.stability_chart, {"chart": charted()}),
     "view.time_histories": lambda: (view.time_histories, {"history": flown(), "title": ""}),
+    # --- robots
+    **{
+        f"robot.{name}": _table(name)
+        for name in ("End", "Errors", "Flip", "Hips", "Plant", "Push", "Running", "Start")
+    },
+    "robot.Control": lambda: (robot.Control, vars(robot.Control())),
+    "robot.Leg": lambda: (_leg, vars(robot.Leg.called("left"))),
+    "robot.Leg.called": lambda: (robot.Leg.called, {"side": "left"}),
+    "robot.Robot": lambda: (
+        _runs,
+        {
+            "model": "biped",
+            "left": robot.Leg.called("left"),
+            "right": robot.Leg.called("right"),
+            "shortest": 0.647,
+            "longest": 0.862,
+        },
+    ),
+    **{
+        f"robot.Run.{name}": (lambda name=name, right=right: (getattr(ran(), name), right))
+        for name, right in _PICTURED.items()
+    },
+    "robot.Run.began": lambda: (ran().began, {"state": "flight"}),
+    "robot.Run.save": lambda: (ran().save, {"path": "run.nc"}),
+    "robot.Runs": lambda: (
+        robot.Runs,
+        {"robot": robot.Robot(), "control": robot.Control(), "duration": 1.0},
+    ),
+    "robot.Runs.targets": lambda: (robot.Runs().targets, {"path": "flip.torque"}),
+    "robot.parse_runs": lambda: (
+        robot.parse_runs,
+        {"given": {"robot": "biped", "flip": {"at": 1.0}}, "beside": Path()},
+    ),
+    "robot.read_runs": lambda: (robot.read_runs, {"path": Path("run.toml")}),
+    "robot.run": lambda: (
+        robot.run,
+        {"robot": "biped", "duration": 0.1, "control": None, "flip": 5.0, "samples": 100},
+    ),
+    "robot.run_of": lambda: (
+        robot.run_of,
+        {"runs": robot.Runs(duration=0.1), "samples": 100},
+    ),
+    "robot.similar": lambda: (
+        robot.similar,
+        {"control": robot.Control(), "mass": 2.0, "length": 1.2},
+    ),
+    "robot.unit": lambda: (robot.unit, {"table": "flip", "name": "torque"}),
     # --- the thesis
     "thesis.reproduce": lambda: (
         thesis.reproduce,

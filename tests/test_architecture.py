@@ -13,7 +13,7 @@ import somersault
 SOURCE = Path(somersault.__file__).parent
 ROOMS = [
     "_core", "spec", "attitude", "simulation", "rigid", "model", "engine", "dynamics", "motion",
-    "history", "stability", "view", "flight", "ensembles", "thesis", "cli",
+    "history", "stability", "view", "flight", "robot", "ensembles", "thesis", "cli",
 ]  # fmt: skip
 MOST_LINES = 400
 

@@ -28,6 +28,9 @@ from . import (
     rigid as rigid,
 )
 from . import (
+    robot as robot,
+)
+from . import (
     simulation as simulation,
 )
 from . import (

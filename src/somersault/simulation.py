@@ -91,11 +91,14 @@ class Endings:
         falls has not failed in this sense.
     unsound : str
         The one, among `failed`, of a run that cannot begin with the numbers it is given.
+    good : tuple of str
+        Those in which what was attempted came off, where runs are attempts.
     """
 
     words: tuple[str, ...]
     failed: tuple[str, ...]
     unsound: str
+    good: tuple[str, ...] = ()
 
     def code(self, word: str) -> int:
         """The code of an ending."""

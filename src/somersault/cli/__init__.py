@@ -17,9 +17,9 @@ from typing import NoReturn, TextIO
 
 from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault._core.stages import told, wipe
-from somersault.cli import _ensemble, _equations, _fly, _map, _models, _reproduce, _stability
+from somersault.cli import _ensemble, _equations, _fly, _map, _models, _reproduce, _run, _stability
 
-_COMMANDS = (_models, _stability, _map, _fly, _ensemble, _equations, _reproduce)
+_COMMANDS = (_models, _stability, _map, _fly, _run, _ensemble, _equations, _reproduce)
 
 
 class _Parser(argparse.ArgumentParser):

@@ -35,7 +35,8 @@ A SPEC is that of `somersault fly`, and what varies:
   extremes = ["tilt"]
   [target]
   somersault = 6.2832
-  tolerance = 0.1"""
+  tolerance = 0.1
+or that of `somersault run`, with [vary] and [sample]: attempts of a robot"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -144,10 +145,19 @@ def _ranking(data: Any, names: tuple[str, ...]) -> dict[str, Any]:
     return {"sensitivity": result, "ranked_samples": used}
 
 
+def _percent(share: dict[str, float]) -> str:
+    return (
+        f"{100 * share['fraction']:.1f} % ({100 * share['low']:.1f} to "
+        f"{100 * share['high']:.1f} % with 95 % confidence)"
+    )
+
+
 def _page(record: dict[str, Any]) -> list[str]:
     shape = " x ".join(f"{name} {n}" for name, n in record["dimensions"].items())
     ended = ", ".join(f"{word} {n:,}" for word, n in record["ended"].items())
     lines = [f"{record['model']}: {record['flights']:,} flights ({shape})", f"  ended: {ended}"]
+    if "successes" in record:
+        lines.append(f"  came off: {_percent(record['successes'])}")
     for name, row in record["reported"].items():
         unit = "" if row["unit"] == "1" else f" {row['unit']}"
         lines.append(
@@ -156,10 +166,7 @@ def _page(record: dict[str, Any]) -> list[str]:
         )
     if "within_tolerance" in record:
         share = record["within_tolerance"]
-        lines.append(
-            f"  landing error within {share['tolerance']:g} rad: {100 * share['fraction']:.1f} % "
-            f"({100 * share['low']:.1f} to {100 * share['high']:.1f} % with 95 % confidence)"
-        )
+        lines.append(f"  landing error within {share['tolerance']:g} rad: {_percent(share)}")
     some = ""
     if record.get("ranked_samples", size := record["dimensions"].get("sample")) != size:
         some = f" (from {record['ranked_samples']:,} of {size:,} samples)"

@@ -1,5 +1,6 @@
 """Compiled functions over many samples, and integrations of many states: it knows no bodies."""
 
+from somersault.engine._closed_loop import ClosedLoop, System
 from somersault.engine._integrator import MOST_STEPS, STATUS, Integrator, Pieces, Solution
 from somersault.engine._kernel import Kernel
 from somersault.engine._machine import compiled, compiled_function, processor
@@ -10,11 +11,13 @@ __all__ = [
     "LANES",
     "MOST_STEPS",
     "STATUS",
+    "ClosedLoop",
     "Integrator",
     "Kernel",
     "Pieces",
     "Solution",
     "Stop",
+    "System",
     "compiled",
     "compiled_function",
     "cores",

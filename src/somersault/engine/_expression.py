@@ -67,9 +67,13 @@ class _Shared(Vectors):
             self._sines_cosines[a] = sine_cosine(self, a)
         return self._sines_cosines[a]
 
-    def less(self, a: str, b: str) -> str:
-        """1 where a < b, else 0."""
-        return self.indicator(self.test("olt", a, b))
+    def holds(self, how: str, a: str, b: str) -> str:
+        """1 where a comparison holds, else 0; `how` is LLVM's name of it."""
+        return self.indicator(self.test(how, a, b))
+
+    def true(self, a: str) -> str:
+        """A mask of the lanes where a is not 0."""
+        return self.test("une", a, number(0.0))
 
 
 _OPERATIONS: dict[int, Callable[..., str]] = {
@@ -85,10 +89,17 @@ _OPERATIONS: dict[int, Callable[..., str]] = {
     ca.OP_SQRT: Vectors.square_root,
     ca.OP_FABS: Vectors.size,
     ca.OP_FLOOR: Vectors.floor,
-    ca.OP_SIGN: lambda v, a: v.sub(v.less(number(0.0), a), v.less(a, number(0.0))),
+    ca.OP_SIGN: lambda v, a: v.sub(v.holds("olt", number(0.0), a), v.holds("olt", a, number(0.0))),
     ca.OP_FMIN: Vectors.least,
     ca.OP_FMAX: Vectors.greatest,
-    ca.OP_LT: _Shared.less,
+    ca.OP_LT: lambda v, a, b: v.holds("olt", a, b),
+    ca.OP_LE: lambda v, a, b: v.holds("ole", a, b),
+    ca.OP_EQ: lambda v, a, b: v.holds("oeq", a, b),
+    ca.OP_NE: lambda v, a, b: v.holds("une", a, b),
+    ca.OP_AND: lambda v, a, b: v.indicator(v.both(v.true(a), v.true(b))),
+    ca.OP_OR: lambda v, a, b: v.indicator(v.either(v.true(a), v.true(b))),
+    ca.OP_NOT: lambda v, a: v.holds("oeq", a, number(0.0)),
+    ca.OP_IF_ELSE_ZERO: lambda v, a, b: v.where(v.true(a), b, number(0.0)),
     ca.OP_SIN: lambda v, a: v.sine_cosine(a)[0],
     ca.OP_COS: lambda v, a: v.sine_cosine(a)[1],
     ca.OP_ATAN2: arc_tangent,

@@ -118,3 +118,15 @@ class Flow(ir.IRBuilder):
         stay = self.append_basic_block("stay")
         self.cbranch(condition, after, stay)
         self.position_at_end(stay)
+
+
+def copier(code: Code) -> Any:
+    """Writes copy(to, to_step, from, from_step, count): it copies numbers so many places apart."""
+    flow, (to, to_step, source, source_step, count) = code.written(
+        "copy", [POINTER, INTEGER, POINTER, INTEGER, INTEGER]
+    )
+    with flow.counted(integer(0), count) as k:
+        value = flow.read(flow.place(source, flow.mul(k, source_step)))
+        flow.store(value, flow.place(to, flow.mul(k, to_step)))
+    flow.ret_void()
+    return flow.function

@@ -18,6 +18,7 @@ from somersault.engine._flow import (
     POINTER,
     Code,
     Flow,
+    copier,
     double,
     integer,
 )
@@ -71,7 +72,7 @@ _FLIGHT, _PIECE, _SAMPLE = range(3)
 
 class _Lane:
     """Writes what is done for one lane, at the end of `flow`; `places` are its job, block, trial,
-    control and integers, and its number; `copy` is `_copy`."""
+    control and integers, and its number; `copy` is `copier`'s."""
 
     def __init__(
         self, flow: Flow, rows: Rows, changing: int, places: Sequence[Any], copy: Any
@@ -211,18 +212,6 @@ class _Lane:
         self._flow.call(self._copy, [to, side, source, lane, integer(count)])
 
 
-def _copy(code: Code) -> Any:
-    """copy(to, to_step, from, from_step, count), which copies numbers so many places apart."""
-    flow, (to, to_step, source, source_step, count) = code.written(
-        "copy", [POINTER, INTEGER, POINTER, INTEGER, INTEGER]
-    )
-    with flow.counted(integer(0), count) as k:
-        value = flow.read(flow.place(source, flow.mul(k, source_step)))
-        flow.store(value, flow.place(to, flow.mul(k, to_step)))
-    flow.ret_void()
-    return flow.function
-
-
 def fly(rows: Rows, changing: int) -> str:
     """LLVM text of `void fly(Job *)`: the flights of the queue, eight at a time, until there are
     none. It calls @step and @renew.
@@ -269,7 +258,7 @@ def fly(rows: Rows, changing: int) -> str:
 
 def _serve(code: Code, rows: Rows, changing: int) -> Any:
     """serve(job, x, z, c, integers, lane): `_Lane.serve`, as a function."""
-    copy = _copy(code)
+    copy = copier(code)
     flow, arguments = code.written("serve", [*[POINTER] * 5, INTEGER], INTEGER)
     left = flow.room(INTEGER)
     _Lane(flow, rows, changing, arguments, copy).serve(left)

@@ -142,4 +142,5 @@ def _in_memory(
 def chunk_size(plan: Plan) -> int:
     """Flights in a chunk: about a second of work, some megabytes."""
     fitting = max(_CHUNK_BYTES // run_bytes(plan), 64)
-    return min(fitting, _CHUNK, max(_LEAST_CHUNK, -(-plan.count // _PARTS)))
+    least = min(_LEAST_CHUNK, plan.simulation.together)  # a robot's run is long
+    return min(fitting, _CHUNK, max(least, -(-plan.count // _PARTS)))

@@ -23,6 +23,14 @@ def failure_codes(ended: xr.DataArray) -> list[int]:
     return [words.index(word) for word in _listed(ended, "failures")]
 
 
+def success_codes(ended: xr.DataArray) -> list[int]:
+    """The codes of attempts that came off; none where runs are no attempts."""
+    if "successes" not in ended.attrs:
+        return []
+    words = ending_words(ended)
+    return [words.index(word) for word in _listed(ended, "successes")]
+
+
 def _listed(ended: xr.DataArray, attribute: str) -> tuple[str, ...]:
     text = getattr(ended, "attrs", {}).get(attribute)
     if not isinstance(text, str):

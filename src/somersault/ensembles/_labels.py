@@ -26,7 +26,7 @@ def attributes(plan: Plan) -> dict[str, Any]:
 
 def variable_attributes(plan: Plan, name: str) -> dict[str, Any]:
     """Of a variable: its unit, and of `ended` what its codes mean (as the CF conventions have it)
-    and which of them are failures."""
+    which of them are failures, and which successes."""
     variable = plan.variables[name]
     labels: dict[str, Any] = {"units": variable.unit}
     if variable.words:
@@ -36,6 +36,8 @@ def variable_attributes(plan: Plan, name: str) -> dict[str, Any]:
         labels["flag_values"] = list(range(len(endings.words)))
         labels["flag_meanings"] = _one_word_each(endings.words)
         labels["failures"] = _one_word_each(endings.failed)
+        if endings.good:
+            labels["successes"] = _one_word_each(endings.good)
     return labels
 
 

@@ -1,4 +1,4 @@
-"""Ensembles of flights described in a TOML file: a flight's SPEC, and what varies."""
+"""Ensembles described in a TOML file: the SPEC of a flight or of a robot's run, and what varies."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from somersault._core.errors import SomersaultError
 from somersault.ensembles._plan import Plan, plan
 from somersault.ensembles._vary import Vary
 from somersault.flight import KEYS, Maneuver, Report, flights
+from somersault.robot import KEYS as RUN_KEYS
+from somersault.robot import parse_runs
 from somersault.spec import Unfit, read_as, read_toml, structured, structured_within
 
 _ACCURACY = 1e-7
@@ -109,6 +111,8 @@ def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
             raise SomersaultError(f"{key} must be a table; write [{key}]")
     if "vary" in given and not given["vary"]:
         raise SomersaultError("vary is empty; say what varies, [vary.NAME], or leave it out")
+    if "robot" in given:
+        return _of_runs(given, beside)
     if "samples" in given:
         raise SomersaultError("samples is no key of an ensemble's SPEC; histories are in [report]")
     known = [*(key for key in KEYS if key != "samples"), *_TABLES]
@@ -138,6 +142,22 @@ def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
     sample = keys.sample
     planned = plan(many, dict(keys.vary or {}), sample.size, sample.seed, sample.sequence)
     return EnsembleSpec(planned, tolerance, reported.quantities)
+
+
+def _of_runs(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
+    """Runs of a robot, which report what they report."""
+    tables = ("vary", "sample")
+    known = [*RUN_KEYS, *tables]
+    for key in given:
+        if key not in known:
+            raise SomersaultError(
+                f"{key} is no key of an ensemble of runs; here it takes {', '.join(known)}"
+            )
+    runs = parse_runs({k: v for k, v in given.items() if k not in tables}, beside)
+    keys = structured({k: v for k, v in given.items() if k in tables}, Tables)
+    sample = keys.sample
+    planned = plan(runs, dict(keys.vary or {}), sample.size, sample.seed, sample.sequence)
+    return EnsembleSpec(planned, None, tuple(runs.variables))
 
 
 # ------------------------------------------------------------------------ kinds of value

@@ -14,7 +14,13 @@ from somersault._core.checks import name_list, shown
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number, numbers
 from somersault.ensembles._chunks import chunked
-from somersault.ensembles._endings import ending_words, failed, failure_codes, run_already
+from somersault.ensembles._endings import (
+    ending_words,
+    failed,
+    failure_codes,
+    run_already,
+    success_codes,
+)
 from somersault.ensembles._plan import OVER_TIME, SAMPLE
 from somersault.ensembles._selection import quantiles as selected
 from somersault.simulation import ENDED, LANDING_ERROR, NOT_RUN
@@ -247,11 +253,13 @@ def summary(data: xr.Dataset, tolerance: float | None = None) -> dict[str, Any]:
     dict
         "flights", how many; "ended", how many ended how; "reported", the 5, 50 and 95 % quantiles
         of each quantity with its unit; and with a tolerance "within_tolerance", the share of
-        landings within it.
+        landings within it; and where runs are attempts "successes", the share that came off.
     """
     _require_dataset(data)
     ended = data[ENDED]
     row: dict[str, Any] = {"flights": int(ended.size), "ended": endings(data)}
+    if good := success_codes(ended):
+        row["successes"] = _succeeded(data, good)
     table = {}
     for name, values in data.data_vars.items():
         if values.dtype.kind != "f" or OVER_TIME in values.dims:
@@ -275,6 +283,15 @@ def endings(data: xr.Dataset) -> dict[str, int]:
     return {word: int(counts[k]) for k, word in enumerate(words) if counts[k]}
 
 
+def _succeeded(data: xr.Dataset, good: Sequence[int]) -> dict[str, float]:
+    """The share of attempts that came off, of those that there have been."""
+    hits = counted = 0
+    for codes in _blocks(data[ENDED]):
+        hits += int(np.isin(codes, good).sum())
+        counted += int((codes != NOT_RUN).sum())
+    return _share(hits, counted)
+
+
 def _landed_within(data: xr.Dataset, most: float, tolerance: float) -> dict[str, float]:
     """The share of landings with an error of at most `most`, rad."""
     lost = [*failure_codes(data[ENDED]), NOT_RUN]
@@ -282,11 +299,14 @@ def _landed_within(data: xr.Dataset, most: float, tolerance: float) -> dict[str,
     for error, codes in zip(_blocks(data[LANDING_ERROR]), _blocks(data[ENDED]), strict=True):
         hits += int(((error <= most) & ~np.isin(codes, lost)).sum())
         counted += int((codes != NOT_RUN).sum())
+    return {"tolerance": tolerance, **_share(hits, counted)}
+
+
+def _share(hits: int, counted: int) -> dict[str, float]:
+    """A share with its confidence interval."""
     low, high = _interval(np.array(hits), np.array(counted), _CONFIDENCE)
     row = (hits / counted, float(low), float(high)) if counted else (np.nan,) * 3
-    return {
-        "tolerance": tolerance, **dict(zip(("fraction", "low", "high"), row, strict=True)),
-    }  # fmt: skip
+    return dict(zip(("fraction", "low", "high"), row, strict=True))
 
 
 def _blocks(values: xr.DataArray) -> Iterator[Array]:

@@ -1,0 +1,154 @@
+"""`somersault run MODEL`: a robot that runs, and somersaults on the way."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from somersault._core.errors import SomersaultError
+from somersault.cli._assignments import assignments
+from somersault.cli._outputs import Writing
+
+if TYPE_CHECKING:
+    from somersault.robot import Run, Runs
+
+NAME = "run"
+HELP = "A robot that runs on two legs, and somersaults on the way."
+EXAMPLES = """examples:
+  somersault run biped
+  somersault run biped --flip at=5 --video flip.mp4
+  somersault run biped --flip at=5 attitude=6.0 --duration 12 --json
+  somersault run SPEC.toml --out run.nc --page run.html
+
+A SPEC, of which all but the robot may be left out:
+  robot = "biped"               # a shipped robot or a file
+  duration = 15.0               # s
+  [running]
+  speed = 1.0                   # m/s
+  [flip]
+  at = 5.0                      # s
+  torque = 105.0                # N m
+  [push]
+  at = 2.0                      # s
+  sideways = 100.0              # N
+All its numbers are in docs/robots.md."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the command's arguments."""
+    parser.add_argument(
+        "model", metavar="MODEL", help="a shipped robot, a file of one (.xml), or a SPEC (.toml)"
+    )
+    parser.add_argument(
+        "--flip", nargs="+", metavar="KEY=NUMBER",
+        help="somersault: at=SECONDS, and other numbers of [flip]",
+    )  # fmt: skip
+    parser.add_argument(
+        "--duration", type=float, metavar="S", help="s (default: 10, or the SPEC's)"
+    )
+    parser.add_argument(
+        "--out", type=Path, metavar="FILE", help="write its history, .nc (NetCDF) or .csv"
+    )
+    parser.add_argument(
+        "--video", type=Path, metavar="FILE", help="write a film of it, .mp4, .webm or .gif"
+    )
+    parser.add_argument(
+        "--page", type=Path, metavar="FILE", help="write a page that plays it in a browser, .html"
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON for programs")
+
+
+def run(chosen: argparse.Namespace) -> None:
+    """Run, write what is asked for, print how it ended."""
+    from somersault._core.datasets import check_history_file
+    from somersault.robot import run_of
+
+    if chosen.out is not None:
+        check_history_file(chosen.out)
+    if chosen.video is not None:
+        from somersault.view import check_film
+
+        check_film(chosen.video)
+    if chosen.page is not None:
+        from somersault.view import check_page
+
+        check_page(chosen.page)
+    ran = run_of(_asked_for(chosen))
+    writing = Writing()
+    if chosen.out is not None:
+        with writing:
+            ran.save(chosen.out)
+    if chosen.video is not None:
+        with writing:
+            ran.film(chosen.video)
+    if chosen.page is not None:
+        with writing:
+            ran.page(chosen.page)
+    print(json.dumps(_record(ran)) if chosen.json else "\n".join(_page(ran)))
+    writing.finish()
+
+
+def _asked_for(chosen: argparse.Namespace) -> Runs:
+    from somersault.robot import Flip, Robot, Runs, read_runs
+    from somersault.spec import structured
+
+    if chosen.model.endswith(".toml"):
+        runs = read_runs(Path(chosen.model))
+    else:
+        runs = Runs(Robot(chosen.model))
+    if chosen.duration is not None:
+        runs = replace(runs, duration=chosen.duration)
+    if chosen.flip:
+        given = assignments("--flip", chosen.flip)
+        structured(given, Flip, "flip")  # refuses what is none of its numbers
+        flip = replace(runs.control.flip, **given)
+        runs = replace(runs, control=replace(runs.control, flip=flip))
+        if flip.at >= runs.duration:
+            raise SomersaultError(
+                f"the somersault is to be at {flip.at:g} s, but the run is over at "
+                f"{runs.duration:g}; give --flip at=S, or a longer --duration"
+            )
+    return runs
+
+
+def _record(ran: Run) -> dict[str, Any]:
+    return {
+        "model": ran.model.name,
+        "ended": ran.ended,
+        "fell": ran.fell,
+        "duration": float(ran.outcome["time"]),
+        "distance": float(ran.positions[-1, 0] - ran.positions[0, 0]),
+        "speed": float(ran.speed.mean()),
+        "steps": int(ran.kept["steps"][-1]),
+        "somersaults": int(ran.kept["turns"][-1]),
+        "outcome": {k: None if v != v else v for k, v in ran.outcome.items()},
+        "events": [[round(event.time, 6), event.state] for event in ran.events],
+    }
+
+
+_OF_LANDING = (
+    ("lift_off_speed", "lift-off at", "m/s", 1.0),
+    ("flight_time", "in the air for", "s", 1.0),
+    ("landing_somersault", "landed at a somersault of", "°", 57.29577951308232),
+    ("landing_tilt", "tilt", "°", 57.29577951308232),
+    ("landing_inclination", "legs inclined by", "°", 57.29577951308232),
+)
+
+
+def _page(ran: Run) -> list[str]:
+    record = _record(ran)
+    lines = [
+        f"{record['model']}, {record['duration']:.4g} s, {record['steps']} steps, "
+        f"{record['speed']:.2f} m/s: {record['ended']}"
+    ]
+    if record["somersaults"]:
+        parts = [
+            f"{words} {factor * ran.outcome[name]:.4g}{'' if unit == '°' else ' '}{unit}"
+            for name, words, unit, factor in _OF_LANDING
+        ]
+        lines.append(f"  somersault: {', '.join(parts)}")
+        lines.append(f"  {int(ran.outcome['steps_after'])} steps after it")
+    return lines

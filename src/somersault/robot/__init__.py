@@ -1,0 +1,49 @@
+"""Robots that run and flip, on the ground of MuJoCo: a controller of named states, compiled."""
+
+from somersault.robot._control import (
+    Control,
+    End,
+    Errors,
+    Flip,
+    Hips,
+    Plant,
+    Push,
+    Running,
+    Start,
+)
+from somersault.robot._controller import Controller
+from somersault.robot._robot import Leg, Machine, Robot
+from somersault.robot._run import Event, Run, run, run_of
+from somersault.robot._runs import Runs
+from somersault.robot._spec import KEYS, parse_runs, read_runs
+from somersault.robot._states import Exit, Now, State
+from somersault.robot._units import similar, unit
+
+__all__ = [
+    "KEYS",
+    "Control",
+    "Controller",
+    "End",
+    "Errors",
+    "Event",
+    "Exit",
+    "Flip",
+    "Hips",
+    "Leg",
+    "Machine",
+    "Now",
+    "Plant",
+    "Push",
+    "Robot",
+    "Run",
+    "Running",
+    "Runs",
+    "Start",
+    "State",
+    "parse_runs",
+    "read_runs",
+    "run",
+    "run_of",
+    "similar",
+    "unit",
+]

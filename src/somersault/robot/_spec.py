@@ -1,0 +1,108 @@
+"""Runs described in a TOML file: which robot, and the numbers of its controller."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any
+
+from somersault._core.checks import file_path, shown
+from somersault._core.errors import SomersaultError
+from somersault.robot._control import Control, End, Errors, Flip, Hips, Plant, Push, Running, Start
+from somersault.robot._robot import Robot
+from somersault.robot._runs import Runs
+from somersault.spec import Unfit, read_as, read_toml, structured, structured_within
+
+
+@dataclass(frozen=True)
+class Keys:
+    """The keys of a SPEC of a run."""
+
+    robot: Robot
+    duration: float = 10.0
+    start: Start = field(default_factory=Start)
+    plant: Plant = field(default_factory=Plant)
+    running: Running = field(default_factory=Running)
+    hips: Hips = field(default_factory=Hips)
+    flip: Flip = field(default_factory=Flip)
+    errors: Errors = field(default_factory=Errors)
+    push: Push = field(default_factory=Push)
+    end: End = field(default_factory=End)
+
+
+KEYS = tuple(Keys.__dataclass_fields__)
+"""The keys of a SPEC of a run."""
+
+
+def read_runs(path: Path) -> Runs:
+    """The run in a TOML file, a SPEC as `somersault run` takes it.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The robot's file is looked for in the same folder.
+
+    Returns
+    -------
+    Runs
+
+    Raises
+    ------
+    SomersaultError
+        Naming the key, for what does not fit.
+    """
+    file = file_path("the SPEC", path)
+    return parse_runs(read_toml(file), file.parent)
+
+
+def parse_runs(given: Mapping[str, Any], beside: Path) -> Runs:
+    """The run in a SPEC's tables.
+
+    Parameters
+    ----------
+    given : mapping
+        As TOML has it.
+    beside : pathlib.Path
+        The folder in which the robot's file is looked for.
+
+    Returns
+    -------
+    Runs
+
+    Raises
+    ------
+    SomersaultError
+        Naming the key, for what does not fit.
+    """
+    if not isinstance(given, Mapping):
+        raise SomersaultError(f"a SPEC is a table of keys, and not {shown(given)}")
+    folder = file_path("beside", beside)
+    if "robot" not in given:
+        raise SomersaultError('robot is missing; a SPEC of a run has robot = "biped", or a file')
+    tables = dict(given)
+    tables["robot"] = _found(tables["robot"], folder)
+    keys = structured(tables, Keys)
+    control = Control(**{table.name: getattr(keys, table.name) for table in fields(Control)})
+    return Runs(keys.robot, control, keys.duration)
+
+
+def _found(robot: Any, beside: Path) -> Any:
+    """The robot's table, with its file beside the SPEC."""
+    table = {"model": robot} if isinstance(robot, str) else robot
+    if not isinstance(table, Mapping):
+        raise SomersaultError(f"robot must be a name, a file or a table, and is {shown(robot)}")
+    model = table.get("model")
+    if isinstance(model, str) and Path(model).suffix and (beside / model).is_file():
+        return {**table, "model": str(beside / model)}
+    return table
+
+
+def _hip(value: Any, _: Any) -> tuple[str, str, str]:
+    names = structured_within(value, tuple[str, ...])
+    if len(names) != 3:
+        raise Unfit("the names of three joints", value)
+    return names
+
+
+read_as(tuple[str, str, str], _hip)
