@@ -22,6 +22,7 @@ CHAPTER = Chapter(
         _entry("fig6-4", "Figure 6-4: an off-nominal start, prescribed", "_rudi_flights.fig_6_4"),
         _entry("fig6-5", "Figure 6-5: the same start, compliant", "_rudi_flights.fig_6_5"),
         _entry("table6-1", "Table 6.1: the rudi's eigenfrequencies", "_eigenfrequencies.table_6_1"),
+        _entry("fig6-6", "Figure 6-6: the 3D Biped's map with a weight", "_weighted_biped.fig_6_6"),
         _entry(
             "ch6-why",
             "Why compliance lands better",
