@@ -15,6 +15,7 @@ from somersault._core.checks import file_path, instance, text, whole_number
 from somersault._core.datasets import save_history
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
+from somersault._core.stages import stage
 from somersault.attitude import unwrapped_angles
 from somersault.history import summary
 from somersault.model import Model
@@ -259,7 +260,10 @@ def run_of(runs: Runs, samples: int = SAMPLES) -> Run:
     every = round(1 / PERIOD) // each
     m = runs.robot.machine.mujoco
     row = np.array(list(runs.values.values()))
-    (lane,), (record,) = runs.carried_out(row[None], every)
+    with stage("compiling the controller"):
+        runs.controller.loop.compile()
+    with stage("running"):
+        (lane,), (record,) = runs.carried_out(row[None], every)
     widths = [m.nq, m.nv, SENSORS, len(REMEMBERED), len(row), m.nu]
     parts = np.split(record, np.cumsum(widths), axis=1)
     kept = dict(zip(REMEMBERED, parts[3].T, strict=True))

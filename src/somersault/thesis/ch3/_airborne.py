@@ -10,15 +10,17 @@ from somersault._core.array import Array
 from somersault.robot import Run
 from somersault.thesis._claims import number, statement
 from somersault.thesis._entries import Result
+from somersault.thesis._motion import Motion
 from somersault.thesis.ch3._measured import (
     between,
     between_times,
     degrees,
+    excerpt,
     hip_rate,
     leg_length,
     lines,
 )
-from somersault.thesis.ch3._runs import nominal, over_rotated
+from somersault.thesis.ch3._runs import FLIP, nominal, over_rotated
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -172,7 +174,11 @@ def fig_3_7() -> Result:
         f"legs inclined by {ours['landing_inclination']:.1f}°.",
         claims,
         _draw_air(run, all_four=False),
-    )
+        motion=Motion(
+            {"it over-rotates": excerpt(run, FLIP, FLIP + 4)}, 0.5,
+            {"vectors": (), "camera": (70.0, 10.0)},
+        ),
+    )  # fmt: skip
 
 
 def _draw_air(run: Run, all_four: bool) -> Figure:

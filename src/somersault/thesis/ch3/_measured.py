@@ -7,10 +7,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from somersault._core.array import Array
+from somersault.history import Recording
 from somersault.robot import Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+
+def excerpt(run: Run, first: float, last: float) -> Recording:
+    """Two hundred samples a second of a part of a run, to be filmed."""
+    k = between_times(run, first, last)[::5]
+    return Recording(
+        run.model, run.times[k], run.base_position[k], run.base_quaternion[k],
+        run.joint_coordinates[k], run.angles[k],
+    )  # fmt: skip
 
 
 def degrees(run: Run) -> dict[str, float]:

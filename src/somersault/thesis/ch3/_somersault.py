@@ -10,7 +10,16 @@ from somersault._core.array import Array
 from somersault.robot import Run
 from somersault.thesis._claims import number, statement
 from somersault.thesis._entries import Result, Table
-from somersault.thesis.ch3._measured import apart, between, between_times, both, lines, touched
+from somersault.thesis._motion import Motion
+from somersault.thesis.ch3._measured import (
+    apart,
+    between,
+    between_times,
+    both,
+    excerpt,
+    lines,
+    touched,
+)
 from somersault.thesis.ch3._runs import FLIP, nominal
 
 if TYPE_CHECKING:
@@ -35,7 +44,11 @@ def fig_3_2() -> Result:
         "left.",
         (),
         contact_sheet(run, times, columns=6, view=(90.0, 6.0)),
-    )
+        motion=Motion(
+            {"the somersault": excerpt(run, FLIP, FLIP + 4)}, 0.5,
+            {"vectors": (), "camera": (70.0, 10.0)},
+        ),
+    )  # fmt: skip
 
 
 def table_3_2() -> Result:
