@@ -109,6 +109,7 @@ def test_a_model_read_apart_is_the_same_to_the_last_bit(
         np.testing.assert_array_equal(one.inertia, two.inertia)
 
 
+@pytest.mark.filterwarnings("ignore::somersault.SomersaultWarning")  # of what a robot has besides
 def test_shipped_models_need_no_other_process(monkeypatch: pytest.MonkeyPatch) -> None:
     def never(path: Path) -> None:
         raise AssertionError(path)

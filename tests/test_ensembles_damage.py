@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import warnings
 from functools import cache
@@ -64,7 +65,7 @@ def other(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("name", ["tilt", "twist_history", "steps", "ended", "start", "seal"])
-@pytest.mark.parametrize("damage", ["gone", "empty", "short", "zeros", "one bit"])
+@pytest.mark.parametrize("damage", ["gone", "empty", "short", "zeros", "one bit", "folder", "pipe"])
 def test_what_is_damaged_is_flown_again_and_said(
     stored: Path, whole: so.Ensemble, tmp_path: Path, name: str, damage: str
 ) -> None:
@@ -74,6 +75,9 @@ def test_what_is_damaged_is_flown_again_and_said(
     content = file.read_bytes()
     if damage == "gone":
         file.unlink()
+    elif damage in ("folder", "pipe"):
+        file.unlink()
+        (file.mkdir if damage == "folder" else lambda: os.mkfifo(file))()
     elif damage == "one bit":
         file.write_bytes(bytes([content[0] ^ 16]) + content[1:])
     else:
@@ -85,7 +89,7 @@ def test_what_is_damaged_is_flown_again_and_said(
     else:
         with pytest.raises(so.SomersaultError, match="1 of its 16 chunks"):
             so.Ensemble.open(store)
-        with pytest.warns(so.SomersaultWarning, match="1 chunk was damaged in .*: run again"):
+        with pytest.warns(so.SomersaultWarning, match="1 chunk was damaged in .* is run again"):
             same(flown(store), whole)
     same(so.Ensemble.open(store), whole)
 

@@ -9,7 +9,7 @@ from fuzz.inputs import spoilt
 from fuzz.readers import READERS
 from fuzz.run import Report, run
 
-QUICK, MANY = 100, 4_000
+QUICK, MANY = 100, 2_000
 
 
 def _none_failed(report: Report, folder: Path) -> None:

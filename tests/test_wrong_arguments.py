@@ -247,6 +247,8 @@ PUBLIC = dict(_public())
 
 def _tried(name: str) -> list[str]:
     """The arguments of a call: those of its signature, and the options that its right call has."""
+    if name == "thesis.reproduce":  # of which nothing, in any form, means everything
+        return ["out", "progress"]
     signature = _arguments(PUBLIC[name]) if name in PUBLIC else {}
     plain = [n for n, p in signature.items() if p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)]
     return [*plain, *(n for n in CALLS[name]()[1] if n not in plain)]

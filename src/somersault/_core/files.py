@@ -48,10 +48,10 @@ def temporary_folder(parent: Path | None = None) -> Iterator[Path]:
         yield name
 
 
-def read_bytes(path: Path, most: int) -> bytes:
-    """The first `most` bytes of a file; OSError for what is none, a pipe or a device among them.
+def read_bytes(path: Path, most: int = -1) -> bytes:
+    """The first `most` bytes of a file, or all; OSError for what is none.
 
-    Nobody waits for a pipe that no one writes to.
+    A pipe or a device is none. Nobody waits for a pipe that no one writes to.
     """
     handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | _BINARY)
     with os.fdopen(handle, "rb") as file:

@@ -46,12 +46,17 @@ def heed(signals: Sequence[signal.Signals] = _TO_STOP, last_words: str = "") -> 
 @contextmanager
 def children_unaware() -> Iterator[None]:
     """Processes begun within do not hear interrupts; one that comes meanwhile is raised after."""
+    from multiprocessing import resource_tracker
+
     came: list[int] = []
     handler = signal.getsignal(signal.SIGINT)
     in_charge = threading.current_thread() is threading.main_thread() and callable(handler)
     if in_charge:
         signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
     before = _mask_interrupts("SIG_BLOCK")
+    # It unblocks interrupts when it starts, for this thread and what that begins later.
+    resource_tracker.ensure_running()
+    _mask_interrupts("SIG_BLOCK")
     try:
         yield
     finally:

@@ -8,7 +8,13 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from somersault.cli._outputs import PICTURE_ENDINGS, PICTURES, Writing, save_picture
+from somersault.cli._outputs import (
+    PICTURE_ENDINGS,
+    PICTURES,
+    Writing,
+    check_apart,
+    save_picture,
+)
 
 NAME = "ensemble"
 HELP = "Many flights that differ in what a TOML file varies; goes on where it was stopped."
@@ -80,6 +86,7 @@ def run(chosen: argparse.Namespace) -> None:
     if chosen.landings is not None:
         check_file(chosen.landings, (".png",))
     whole = chosen.out is not None and check_out(chosen.out)  # written in one piece, at the end
+    check_apart(chosen.spec, chosen.out, chosen.plot, chosen.landings)
     spec = read_ensemble(chosen.spec)
     flown = carried_out(
         spec.plan, None if whole else chosen.out, chosen.chunk, chosen.threads, chosen.workers,

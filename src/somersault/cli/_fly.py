@@ -8,7 +8,7 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from somersault.cli._outputs import Writing
+from somersault.cli._outputs import Writing, check_apart
 
 if TYPE_CHECKING:
     from somersault.flight import Flight
@@ -67,6 +67,7 @@ def run(chosen: argparse.Namespace) -> None:
         from somersault.view import check_page
 
         check_page(chosen.page)
+    check_apart(chosen.spec, chosen.out, chosen.video, chosen.page)
     maneuver = Maneuver.read(chosen.spec)
     with warnings.catch_warnings():  # that it broke off is the error below
         warnings.filterwarnings("ignore", message=BROKE_OFF)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from somersault._core.errors import SomersaultError, SomersaultWarning
+from somersault.cli._outputs import require_other
 
 if TYPE_CHECKING:
     from somersault.model import Joint, Model
@@ -52,6 +53,8 @@ def run(chosen: argparse.Namespace) -> None:
         asked.append(_athlete(chosen.athlete))
     if chosen.out is not None and len(asked) != 1:
         raise SomersaultError(f"--out writes one model, and {len(asked)} are named; name one")
+    if chosen.out is not None:
+        require_other(chosen.out, map(Path, chosen.models))
     records = [_record(one) for one in asked or shipped()]
     if chosen.out is not None:
         with warnings.catch_warnings():  # which are notes of the page

@@ -2,15 +2,44 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from somersault._core.errors import SomersaultError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 PICTURES = (".png", ".svg")
 PICTURE_ENDINGS = " or ".join(PICTURES)
+
+
+def check_apart(spec: Path, *outputs: Path | None) -> None:
+    """SomersaultError where an output would replace a SPEC, or a file that it names."""
+    from somersault.spec import read_toml
+
+    named = [spec, *(spec.parent / name for name in _texts(read_toml(spec)))]
+    for output in filter(None, outputs):
+        require_other(output, named)
+
+
+def require_other(output: Path, inputs: Iterable[Path]) -> None:
+    """SomersaultError where an output is one of the files that are read."""
+    if os.path.exists(output):
+        for file in inputs:
+            if os.path.exists(file) and os.path.samefile(file, output):
+                raise SomersaultError(f"{output} is read here; give what is written another name")
+
+
+def _texts(value: Any) -> Iterator[str]:
+    if isinstance(value, str) and "\0" not in value:
+        yield value
+    elif isinstance(value, dict | list):
+        for part in value.values() if isinstance(value, dict) else value:
+            yield from _texts(part)
 
 
 class Writing:

@@ -119,7 +119,7 @@ def _digest_of_coordinates(path: Path, metadata: dict[str, Any]) -> str:
     digest = hashlib.sha256()
     for name in fixed_coordinates(metadata):
         digest.update(f" {name} ".encode())
-        digest.update((path / name / "c" / "0").read_bytes())
+        digest.update(read_bytes(path / name / "c" / "0"))
     return digest.hexdigest()
 
 

@@ -23,8 +23,7 @@ def moved_by(simulation: Simulation, name: str, vary: Vary) -> tuple[Target, ...
     except SomersaultError as mistake:
         raise SomersaultError(f"vary.{name}: {mistake}") from None
     return tuple(
-        Target(t.name, t.factor * vary.scale, 0.0 if vary.adds_to else t.offset, t.unit)
-        for t in meant
+        Target(t.name, t.factor * vary.scale, 0.0 if vary.adds else t.offset, t.unit) for t in meant
     )
 
 

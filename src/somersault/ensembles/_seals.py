@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import hashlib
 import json
+import shutil
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from somersault._core.files import read_bytes
 from somersault.engine import cores
 from somersault.ensembles._chunks import Chunks
 from somersault.ensembles._plan import OVER_TIME, SAMPLE, SEAL, Plan, digest_of
@@ -51,11 +53,19 @@ class Seals:
         """Where the seal of chunk k is kept."""
         return self.path.joinpath(SEAL, "c", *map(str, self.chunks.place(k)), "0")
 
+    def make_way(self, k: int) -> None:
+        """Remove folders and pipes that stand where files of chunk k are to be."""
+        for file in (*self.files(k), self.seal_file(k)):
+            if file.is_dir() and not file.is_symlink():
+                shutil.rmtree(file)
+            elif file.exists() and not file.is_file():
+                file.unlink()
+
     def seal(self, k: int) -> bytes:
         """The seal that fits chunk k as its files are now; OSError where one is missing."""
         digest = hashlib.sha256(f"{self.of} {k}".encode())
         for file in self.files(k):
-            content = file.read_bytes()
+            content = read_bytes(file)
             digest.update(f" {len(content)} ".encode())
             digest.update(content)
         return digest.digest()
@@ -71,7 +81,7 @@ class Seals:
     def _fits(self, k: int) -> bool | None:
         """Whether chunk k fits its seal; None where it has none yet."""
         try:
-            sealed = self.seal_file(k).read_bytes()
+            sealed = read_bytes(self.seal_file(k))
         except FileNotFoundError:
             return None
         except OSError:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from somersault._core.checks import whole_number
+from somersault._core.checks import name_list, whole_number
 from somersault._core.errors import SomersaultError
 from somersault.ensembles._plan import OVER_TIME, SAMPLE
-from somersault.ensembles._summary import check_confidence, reported
+from somersault.ensembles._summary import check_confidence, reported, require_dataset
 from somersault.ensembles._vary import DISTRIBUTIONS
 
 if TYPE_CHECKING:
@@ -97,6 +97,8 @@ def quick_sensitivity(data: xr.Dataset, names: Sequence[str]) -> tuple[dict[str,
     used : int
         How many samples each of them is from.
     """
+    names = name_list("names", names)
+    require_dataset(data)
     specification = json.loads(data.attrs["specification"])
     size = data.sizes[SAMPLE]
     rankings = sum(reported(data, name).size // size for name in names)

@@ -128,8 +128,8 @@ def finished(path: Path, plan: Plan, chunks: Chunks) -> set[int]:
     """Numbers of the chunks that are complete and whole; a warning says how many are damaged."""
     complete, damaged = seals_of_plan(path, plan, chunks).check()
     if damaged:
-        were = "chunk was" if len(damaged) == 1 else "chunks were"
-        note(f"{len(damaged):,} {were} damaged in {path}: run again")
+        were, are = ("chunk was", "is") if len(damaged) == 1 else ("chunks were", "are")
+        note(f"{len(damaged):,} {were} damaged in {path}, and {are} run again")
     return complete
 
 
@@ -144,15 +144,15 @@ def write(path: Path, plan: Plan, chunks: Chunks, k: int, rows: Mapping[str, Arr
 
 def _write(path: Path, plan: Plan, chunks: Chunks, k: int, rows: Mapping[str, Array]) -> None:
     arrays = _arrays(str(path), (path / GROUP).stat().st_mtime_ns)
-    region = chunks.region(k)
+    region, seals = chunks.region(k), seals_of_plan(path, plan, chunks)
+    seals.make_way(k)
     if brings_samples(chunks, k):
         along = region[list(chunks.dims).index(SAMPLE)]
         for name, values in plan.drawn(np.arange(along.start, along.stop)).items():
             arrays[name][along] = values
     for name in plan.variables:
         arrays[name][region] = as_block(rows[name], region)
-    seal = seals_of_plan(path, plan, chunks).seal(k)
-    arrays[SEAL][chunks.place(k)] = np.frombuffer(seal, np.uint8)
+    arrays[SEAL][chunks.place(k)] = np.frombuffer(seals.seal(k), np.uint8)
 
 
 def as_block(values: Array, region: tuple[slice, ...]) -> Array:

@@ -58,7 +58,7 @@ def within(data: xr.Dataset, tolerance: float | None) -> xr.DataArray:
 
 def _tolerance(data: xr.Dataset, tolerance: float | None) -> float:
     """A positive one; SomersaultError unless there are landing errors to hold against it."""
-    _require_dataset(data)
+    require_dataset(data)
     if LANDING_ERROR not in data:
         raise SomersaultError(
             "this ensemble reports no landing_error; say against what landings are measured, or "
@@ -211,14 +211,14 @@ def quantiles(
 
 def reported(data: xr.Dataset, name: str) -> xr.DataArray:
     """A reported quantity; SomersaultError with those there are."""
-    _require_dataset(data)
+    require_dataset(data)
     there = [str(n) for n, v in data.data_vars.items() if v.dtype.kind == "f"]
     if not isinstance(name, str) or name not in there:
         raise SomersaultError(f"this ensemble reports no {shown(name)}; it has {', '.join(there)}")
     return data[name]
 
 
-def _require_dataset(data: xr.Dataset) -> None:
+def require_dataset(data: xr.Dataset) -> None:
     import xarray as xr
 
     if not isinstance(data, xr.Dataset):
@@ -255,7 +255,7 @@ def summary(data: xr.Dataset, tolerance: float | None = None) -> dict[str, Any]:
         of each quantity with its unit; and with a tolerance "within_tolerance", the share of
         landings within it; and where runs are attempts "successes", the share that came off.
     """
-    _require_dataset(data)
+    require_dataset(data)
     ended = data[ENDED]
     row: dict[str, Any] = {"flights": int(ended.size), "ended": endings(data)}
     if good := success_codes(ended):

@@ -116,6 +116,11 @@ class Vary:
         """Names of the numbers that it sets or is added to."""
         return _names(self.sets) or _names(self.adds_to)
 
+    @property
+    def adds(self) -> bool:
+        """Whether it is added to numbers, and does not set them."""
+        return bool(_names(self.adds_to))
+
     @cached_property
     def grid(self) -> Array | None:
         """The values of a grid."""
@@ -150,7 +155,10 @@ class Vary:
 def _names(given: Any) -> tuple[Any, ...]:
     if isinstance(given, str):
         return (given,) if given else ()
-    return tuple(given) if isinstance(given, Sequence) else ()
+    try:
+        return tuple(given)
+    except TypeError:
+        return ()
 
 
 def _listed(values: Any) -> Array:

@@ -117,7 +117,7 @@ def _angles(spin: Spin) -> dict[str, float]:
 def _sums(spin: Spin, moved: Mapping[str, float]) -> dict[str, float]:
     at = _angles(spin)
     by_speed = spread(spin.model, moved, mirrored=True)
-    return {name: at.get(name, 0.0) + float(np.asarray(by)) for name, by in by_speed.items()}
+    return {name: at.get(name, 0.0) + number(f"moved {name}", by) for name, by in by_speed.items()}
 
 
 def _setup(

@@ -78,7 +78,7 @@ def _first_points(chosen: System, begun: Start, points: Array, most: int) -> Arr
     if not parts.sum() < most:
         turn = fastest * (points[-1] - points[0]) / (2 * np.pi)
         raise SomersaultError(
-            f"{chosen.model.name} would turn {turn:.2g} times in {points[-1]:g} s, and keep "
+            f"{chosen.model.name} may turn up to {turn:.2g} times in {points[-1]:g} s, and keep "
             f"{len(points)} samples, where {most} moments fit into the "
             f"{_MOST_BYTES / 2**30:g} GB that a flight may take; make it shorter, slower or more "
             "sparsely sampled"

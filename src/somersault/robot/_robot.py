@@ -268,6 +268,16 @@ def _base(file: str, m: Any) -> str:
     return str(m.body(int(m.jnt_bodyid[0])).name)
 
 
+def _is_there(m: Any, kind: Any, name: str) -> bool:
+    """Whether a model has something of a kind called so."""
+    import mujoco
+
+    try:
+        return bool(mujoco.mj_name2id(m, kind, name) >= 0)
+    except TypeError:  # a name that is no text in UTF-8
+        return False
+
+
 def _check_leg(file: str, m: Any, side: str, leg: Leg) -> None:
     import mujoco
 
@@ -277,7 +287,7 @@ def _check_leg(file: str, m: Any, side: str, leg: Leg) -> None:
         (mujoco.mjtObj.mjOBJ_ACTUATOR, "actuator", (leg.spring, leg.stop)),
     ):
         for name in names:
-            if mujoco.mj_name2id(m, kind, name) < 0:
+            if not _is_there(m, kind, name):
                 what = {"foot": "foot, a geom", "actuator": "spring or stop, an actuator"}
                 raise SomersaultError(
                     f"{file}: its {side} leg has no {what.get(count, count)} called {name!r}; add "

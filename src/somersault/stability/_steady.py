@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import instance, name_list
+from somersault._core.checks import instance, name_list, truth
 from somersault.dynamics import Equations
 from somersault.engine import Kernel
 from somersault.model import Model
@@ -117,6 +117,7 @@ def holding_torques(
     >>> inertia.round(2), torques.round(3)
     (array([11.06]), array([[-0.31,  0.31]]))
     """
+    compiled = truth("compiled", compiled)
     instance("model", model, Model)
     parameters = name_list("parameters", parameters)
     whole = composite_inertia(model, q, parameters, values)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from somersault._core.checks import text
 from somersault.view import style as look
 from somersault.view._look import several
 
@@ -43,6 +44,7 @@ def time_histories(history: History, title: str = "") -> Figure:
     from matplotlib.figure import Figure
 
     (history,) = several("history", history, 1, 1)
+    title = text("title", title)
     time, angles, joints = history.times, history.angles, history.model.coordinates
     rows = 3 if joints else 2
     picture = Figure(figsize=(7.2, 1.2 + 1.9 * rows), layout="constrained")

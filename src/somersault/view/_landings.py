@@ -84,7 +84,8 @@ def landings_picture(
     for what, row in (("colors", colors), ("words", words)):
         if len(row) != count:
             raise SomersaultError(f"there are {count} poses and {len(row)} {what}; give as many")
-    meaning = list(zip(*_rows(key), strict=True)) or [(), ()]
+    lines = _rows(key)
+    meaning = list(zip(*lines, strict=True)) or [(), ()]
     for color in (*colors, *filter(None, meaning[0])):
         if not _COLOR.fullmatch(color):
             raise SomersaultError(f"{shown(color)} is no colour; write it like '#0072B2'")
@@ -93,7 +94,7 @@ def landings_picture(
         raise SomersaultError("superimposed poses have no ground; leave it out")
     width, height = chosen.size
     across, rows = (1, 1) if superimposed else (columns, -(-count // columns))
-    head = _HEAD * len(key) + 12
+    head = _HEAD * len(lines) + 12
     if width * across * (height * rows + head) > MOST_PIXELS:
         raise SomersaultError(
             f"that is a picture of {width * across} x {height * rows + head} pixels; give a "
@@ -109,7 +110,7 @@ def landings_picture(
             cell = sheet[top : top + height, left : left + width]
             cell[:] = frame
             write_on(cell, (6, height - 18), words[k], 10, FAINT)
-    for line, (color, said) in enumerate(key):
+    for line, (color, said) in enumerate(lines):
         top = 8 + _HEAD * line
         if color:
             sheet[top + 3 : top + 15, 10:22, :3] = np.array(rgb(color)) * 255

@@ -24,7 +24,8 @@ from somersault.model.read._xml import Element, read_xml
 _SHORT = 2**16  # bytes
 _HARMLESS = {
     "mujoco", "compiler", "option", "flag", "default", "worldbody", "body", "frame", "freejoint",
-    "joint", "geom", "inertial", "site", "camera", "light",
+    "joint", "geom", "inertial", "site", "camera", "light", "actuator", "motor", "position",
+    "contact", "exclude",
 }  # fmt: skip
 _SIZED = "user"  # an attribute: every element of its kind gets as many numbers as the longest has
 _MOST_FILES = 100  # that include one another
