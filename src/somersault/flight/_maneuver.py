@@ -313,7 +313,7 @@ def _times(duration: float, samples: int | Sequence[float] | Array | None) -> Ar
         samples = int(min(max(2, math.ceil(100 * duration) + 1), 100_001))
     if isinstance(samples, int | np.integer) and not isinstance(samples, bool):
         if not 2 <= samples <= _MOST_SAMPLES:
-            raise SomersaultError(f"samples must be 2 to {_MOST_SAMPLES}, and is {samples}")
+            raise SomersaultError(f"samples must be 2 to {_MOST_SAMPLES}, and is {shown(samples)}")
         return np.linspace(0.0, duration, int(samples))
     times = numbers("samples", samples)
     if not times.size or np.any(np.diff(times) <= 0) or times[0] < 0 or times[-1] > duration:
