@@ -176,7 +176,8 @@ stiff = so.Takeoff(spin=8.64, tilt=0.01, joints={{"shoulder": shaking}})
 before = so.fly("furrer", takeoff, 1.0).landing.twist
 leant = {{"leant": so.Vary(adds_to="takeoff.tilt", normal=[0.0, 0.02])}}
 options = {{"steps": 10**9, "size": 40}}
-so.ensemble("furrer", takeoff, 1.0, leant, **options)  # all is imported
+so.fly("furrer", stiff, 0.01)
+so.ensemble("furrer", takeoff, 1.0, leant, **options)  # all is imported and compiled
 threading.Timer(0.5, _thread.interrupt_main).start()
 try:
     {call}

@@ -60,7 +60,7 @@ def write_toml(path: Path, tables: Mapping[str, Any]) -> None:
     Raises
     ------
     SomersaultError
-        For what is no path, and what TOML cannot hold.
+        For what is no path or a folder, and what TOML cannot hold.
     """
     import tomli_w
 
@@ -68,4 +68,7 @@ def write_toml(path: Path, tables: Mapping[str, Any]) -> None:
         text = tomli_w.dumps(tables)
     except (TypeError, ValueError, AttributeError, RecursionError) as trouble:
         raise SomersaultError(f"these tables cannot be written as TOML: {trouble}") from None
-    write(file_path("path", path), text)
+    file = file_path("path", path)
+    if os.path.isdir(file):
+        raise SomersaultError(f"{file} is a folder; give the name of a file")
+    write(file, text)
