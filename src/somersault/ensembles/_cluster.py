@@ -131,7 +131,8 @@ def _carry(
     except SomersaultError:
         raise
     except (OSError, TimeoutError, asyncio.CancelledError, CancelledError) as trouble:
-        if isinstance(trouble, OSError) and trouble.errno is not None and trouble.filename:
+        late = isinstance(trouble, TimeoutError)  # whose arguments only look like those of a file
+        if isinstance(trouble, OSError) and not late and trouble.errno and trouble.filename:
             raise  # a full disk, say
         raise SomersaultError(
             f"the scheduler at {where} has gone, or has no workers; what is finished is kept: run "
