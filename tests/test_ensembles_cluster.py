@@ -143,7 +143,8 @@ def test_a_worker_on_another_host_that_does_not_see_the_store(tmp_path: Path, se
     shared.mkdir()
     store = shared / "map.zarr"
     name, port = f"so{os.getpid()}", free_port()
-    here, there = "10.213.77.1", "10.213.77.2"
+    net = f"10.213.{os.getpid() % 256}"  # two of these tests may run at once
+    here, there = f"{net}.1", f"{net}.2"
     steps = [
         f"ip netns add {name}",
         f"ip link add {name}a type veth peer name {name}b netns {name}",
