@@ -179,6 +179,7 @@ def drawn_by_mujoco(path: str) -> tuple[Model, Any, Any, np.ndarray]:
     return ours, m, d, q
 
 
+@pytest.mark.filterwarnings("ignore::somersault.SomersaultWarning")  # of what a robot has besides
 @pytest.mark.parametrize("name", so.shipped())
 def test_shapes_of_shipped_models_are_where_mujoco_has_them(name: str) -> None:
     model, m, d, q = drawn_by_mujoco(str(SHIPPED / f"{name}.xml"))
