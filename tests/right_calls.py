@@ -87,7 +87,7 @@ def maneuver() -> so.Maneuver:
 
 @cache
 def flown() -> so.Flight:
-    return so.fly("furrer", TAKEOFF, 0.1, samples=3, gravity=(0.0, 0.0, -9.81))
+    return so.fly("furrer", TAKEOFF, 0.6, samples=3, gravity=(0.0, 0.0, -9.81))
 
 
 @cache
@@ -337,6 +337,7 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     "rigid.separatrix": lambda: (rigid.separatrix, {"inertias": THREE, "points": 5}),
     "rigid.tilt_and_twist": lambda: (rigid.tilt_and_twist, {"cosines": THREE}),
     # --- attitude
+    "attitude.cayley_klein": lambda: (attitude.cayley_klein, {"quaternion": [1.0, 0.0, 0.0, 0.0]}),
     "attitude.as_axes": lambda: (attitude.as_axes, {"axes": (2, 1, 3)}),
     "attitude.angle_rates": lambda: (
         attitude.angle_rates,
@@ -860,6 +861,8 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
         {"good": scattered().dataset["tilt"] > 0},
     ),
     "ensembles.Ensemble.open": lambda: (so.Ensemble.open, {"path": "store.nc"}),
+    "ensembles.Ensemble.save": lambda: (scattered().save, {"path": "scattered.nc"}),
+    "ensembles.check_out": lambda: (ensembles.check_out, {"given": "out.nc"}),
     "ensembles.Ensemble.plot": lambda: (scattered().plot, {"name": "tilt"}),
     "ensembles.Ensemble.landings": lambda: (
         scattered().landings,

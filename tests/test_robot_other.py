@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import re
 from pathlib import Path
 
@@ -17,11 +18,13 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 
 
 @pytest.fixture
-def robots(monkeypatch: pytest.MonkeyPatch):  # type: ignore[no-untyped-def]
-    monkeypatch.syspath_prepend(str(EXAMPLES))
-    import robots
-
-    return robots
+def robots():  # type: ignore[no-untyped-def]
+    spec = importlib.util.spec_from_file_location("examples_robots", EXAMPLES / "robots.py")
+    assert spec is not None
+    assert spec.loader is not None
+    example = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(example)
+    return example
 
 
 def test_another_robot_runs_and_somersaults(robots) -> None:  # type: ignore[no-untyped-def]

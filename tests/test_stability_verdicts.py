@@ -16,7 +16,7 @@ from test_stability import RANKS, numbers, tree
 
 import somersault as so
 from somersault.cli import main
-from somersault.engine import _kernel, use_threads
+from somersault.engine import use_threads
 from somersault.model import Body, Joint, Model
 from somersault.stability import LinearSpin, Spin, _growth, growth_rates, spin, stable_ranges
 
@@ -269,7 +269,7 @@ def test_one_thread_is_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
         raise AssertionError("a pool was asked for")
 
     monkeypatch.setattr(_growth, "pool", none)
-    monkeypatch.setattr(_kernel, "pool", none)
+    monkeypatch.setattr("somersault.engine._threads.pool", none)
     with use_threads(1):
         one = growth_rates("furrer", pose={"shoulder": angles}, damping={"shoulder": 0.1})
     assert np.array_equal(one, many)

@@ -53,6 +53,7 @@ def test_a_damped_stop_takes_energy_and_never_pulls() -> None:
         (lambda: so.JointTakeoff("free", stop_stiffness=np.nan), "stop_stiffness"),
     ],
 )
+@pytest.mark.filterwarnings("ignore::somersault.SomersaultWarning")
 def test_what_is_no_stop(joint: Callable[[], so.JointTakeoff], naming: str) -> None:
     with pytest.raises(so.SomersaultError, match=naming) as caught:
         so.fly("furrer", so.Takeoff(spin=3.0, joints={"left_shoulder": joint()}))
