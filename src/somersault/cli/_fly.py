@@ -8,7 +8,12 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from somersault.cli._outputs import Writing, check_apart
+from somersault.cli._outputs import (
+    add_motion_outputs,
+    check_apart,
+    check_motion_outputs,
+    write_motion,
+)
 
 if TYPE_CHECKING:
     from somersault.flight import Flight
@@ -39,34 +44,16 @@ or, for all joints, [motion] file = "dive.csv" and [compliance]: see docs/flight
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the command's arguments."""
     parser.add_argument("spec", type=Path, metavar="SPEC.toml", help="the flight")
-    parser.add_argument(
-        "--out", type=Path, metavar="FILE", help="write its history, .nc (NetCDF) or .csv"
-    )
-    parser.add_argument(
-        "--video", type=Path, metavar="FILE", help="write a film of it, .mp4, .webm or .gif"
-    )
-    parser.add_argument(
-        "--page", type=Path, metavar="FILE", help="write a page that plays it in a browser, .html"
-    )
+    add_motion_outputs(parser)
     parser.add_argument("--json", action="store_true", help="print JSON for programs")
 
 
 def run(chosen: argparse.Namespace) -> None:
     """Fly, write the history, print how it ended."""
-    from somersault._core.datasets import check_history_file
     from somersault._core.errors import SomersaultError
     from somersault.flight import BROKE_OFF, BROKEN, Maneuver, why_broken
 
-    if chosen.out is not None:
-        check_history_file(chosen.out)
-    if chosen.video is not None:
-        from somersault.view import check_film
-
-        check_film(chosen.video)
-    if chosen.page is not None:
-        from somersault.view import check_page
-
-        check_page(chosen.page)
+    check_motion_outputs(chosen)
     check_apart(chosen.spec, chosen.out, chosen.video, chosen.page)
     maneuver = Maneuver.read(chosen.spec)
     with warnings.catch_warnings():  # that it broke off is the error below
@@ -76,16 +63,7 @@ def run(chosen: argparse.Namespace) -> None:
         raise SomersaultError(
             f"the flight broke off at {flight.landing.time:g} s: {why_broken(flight)}"
         )
-    writing = Writing()
-    if chosen.out is not None:
-        with writing:
-            flight.save(chosen.out)
-    if chosen.video is not None:
-        with writing:
-            flight.film(chosen.video, charts=True, vectors=("momentum",))
-    if chosen.page is not None:
-        with writing:
-            flight.page(chosen.page)
+    writing = write_motion(flight, chosen, charts=True, vectors=("momentum",))
     if chosen.json:
         print(json.dumps(_record(flight)))
     else:

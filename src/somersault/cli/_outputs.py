@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -12,6 +13,9 @@ from somersault._core.errors import SomersaultError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from somersault.flight import Flight
+    from somersault.robot import Run
 
 PICTURES = (".png", ".svg")
 PICTURE_ENDINGS = " or ".join(PICTURES)
@@ -75,3 +79,53 @@ def save_picture(path: Path, figure: Figure) -> None:
     from somersault.view.style import saved
 
     write(path, saved(figure, path.suffix.lower()[1:]))
+
+
+# ------------------------------------------------------------------------------------- a motion
+
+
+def add_motion_outputs(parser: argparse.ArgumentParser) -> None:
+    """Declare what can be written of one motion."""
+    parser.add_argument(
+        "--out", type=Path, metavar="FILE", help="write its history, .nc (NetCDF) or .csv"
+    )
+    parser.add_argument(
+        "--video", type=Path, metavar="FILE", help="write a film of it, .mp4, .webm or .gif"
+    )
+    parser.add_argument(
+        "--page", type=Path, metavar="FILE", help="write a page that plays it in a browser, .html"
+    )
+
+
+def check_motion_outputs(chosen: argparse.Namespace) -> None:
+    """SomersaultError unless all that is asked for of one motion can be written."""
+    from somersault._core.datasets import check_history_file
+
+    if chosen.out is not None:
+        check_history_file(chosen.out)
+    if chosen.video is not None:
+        from somersault.view import check_film
+
+        check_film(chosen.video)
+    if chosen.page is not None:
+        from somersault.view import check_page
+
+        check_page(chosen.page)
+
+
+def write_motion(motion: Flight | Run, chosen: argparse.Namespace, **film: Any) -> Writing:
+    """Write what is asked for of one motion; to be finished when the rest has been told.
+
+    `film` says how it is filmed.
+    """
+    writing = Writing()
+    if chosen.out is not None:
+        with writing:
+            motion.save(chosen.out)
+    if chosen.video is not None:
+        with writing:
+            motion.film(chosen.video, **film)
+    if chosen.page is not None:
+        with writing:
+            motion.page(chosen.page)
+    return writing

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from somersault._core.errors import SomersaultError
 from somersault.cli._assignments import assignments
-from somersault.cli._outputs import Writing
+from somersault.cli._outputs import add_motion_outputs, check_motion_outputs, write_motion
 
 if TYPE_CHECKING:
     from somersault.robot import Run, Runs
@@ -49,44 +49,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--duration", type=float, metavar="S", help="s (default: 10, or the SPEC's)"
     )
-    parser.add_argument(
-        "--out", type=Path, metavar="FILE", help="write its history, .nc (NetCDF) or .csv"
-    )
-    parser.add_argument(
-        "--video", type=Path, metavar="FILE", help="write a film of it, .mp4, .webm or .gif"
-    )
-    parser.add_argument(
-        "--page", type=Path, metavar="FILE", help="write a page that plays it in a browser, .html"
-    )
+    add_motion_outputs(parser)
     parser.add_argument("--json", action="store_true", help="print JSON for programs")
 
 
 def run(chosen: argparse.Namespace) -> None:
     """Run, write what is asked for, print how it ended."""
-    from somersault._core.datasets import check_history_file
     from somersault.robot import run_of
 
-    if chosen.out is not None:
-        check_history_file(chosen.out)
-    if chosen.video is not None:
-        from somersault.view import check_film
-
-        check_film(chosen.video)
-    if chosen.page is not None:
-        from somersault.view import check_page
-
-        check_page(chosen.page)
+    check_motion_outputs(chosen)
     ran = run_of(_asked_for(chosen))
-    writing = Writing()
-    if chosen.out is not None:
-        with writing:
-            ran.save(chosen.out)
-    if chosen.video is not None:
-        with writing:
-            ran.film(chosen.video)
-    if chosen.page is not None:
-        with writing:
-            ran.page(chosen.page)
+    writing = write_motion(ran, chosen)
     print(json.dumps(_record(ran)) if chosen.json else "\n".join(_page(ran)))
     writing.finish()
 
