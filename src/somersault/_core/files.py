@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import secrets
+import shutil
 import stat
 import tempfile
 from collections.abc import Iterator
@@ -46,6 +47,14 @@ def temporary_folder(parent: Path | None = None) -> Iterator[Path]:
     with temporary_name(Path(tempfile.gettempdir()) if parent is None else parent) as name:
         name.mkdir(mode=0o700)
         yield name
+
+
+def make_way(path: Path) -> None:
+    """Remove what stands where a file is to be, like a folder or a pipe; a file stays."""
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+    elif path.exists() and not path.is_file():
+        path.unlink()
 
 
 def read_bytes(path: Path, most: int = -1) -> bytes:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from somersault._core.files import temporary_name
+from somersault._core.files import make_way, temporary_name
 from somersault._core.interrupts import unbroken
 from somersault.ensembles._chunks import Chunks
 from somersault.ensembles._labels import attributes, coordinate_attributes, variable_attributes
@@ -57,8 +56,7 @@ def _replace(source: Path, target: Path) -> None:
             break
         folder.unlink(missing_ok=True)  # a file where a folder was
     target.parent.mkdir(parents=True, exist_ok=True)
-    if target.is_dir():
-        shutil.rmtree(target)
+    make_way(target)
     os.replace(source, target)
 
 

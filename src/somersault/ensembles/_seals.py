@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import hashlib
 import json
-import shutil
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from somersault._core.files import read_bytes
+from somersault._core.files import make_way, read_bytes
 from somersault.engine import cores
 from somersault.ensembles._chunks import Chunks
 from somersault.ensembles._plan import OVER_TIME, SAMPLE, SEAL, Plan, digest_of
@@ -56,10 +55,7 @@ class Seals:
     def make_way(self, k: int) -> None:
         """Remove folders and pipes that stand where files of chunk k are to be."""
         for file in (*self.files(k), self.seal_file(k)):
-            if file.is_dir() and not file.is_symlink():
-                shutil.rmtree(file)
-            elif file.exists() and not file.is_file():
-                file.unlink()
+            make_way(file)
 
     def seal(self, k: int) -> bytes:
         """The seal that fits chunk k as its files are now; OSError where one is missing."""
