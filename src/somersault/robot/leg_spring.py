@@ -17,15 +17,6 @@ def pull(stiffness: Any, rest: Any, damping: Any, length: Any, speed: Any) -> An
     return stiffness * (length - rest) + damping * speed
 
 
-def hanging_length(tuck: Tuck, stiffness: Any, rest: Any, rate: Any) -> Any:
-    """The length at which a leg hangs in equilibrium while the robot turns at a rate, m.
-
-    From k (l − rest) = m_l (l − offset) Ω². There is one while the spring is stiffer than m_l Ω².
-    """
-    softening = tuck.lower_leg / 2 * rate**2
-    return (stiffness * rest - softening * tuck.offset) / (stiffness - softening)
-
-
 def corrected(tuck: Tuck, stiffness: Any, rate: Any, length: Any) -> Any:
     """Which part of an error in momentum the springs keep from the somersault rate.
 
