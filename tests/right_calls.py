@@ -1038,6 +1038,8 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     "dynamics.latex": lambda: (dy.latex, {"model": so.load("book")}),
     "dynamics.parameter_values": lambda: (dy.parameter_values, {"model": furrer()}),
     # --- files of tables
+    "spec.model_beside": lambda: (spec.model_beside, {"name": "furrer", "folder": Path()}),
+    "spec.require_table": lambda: (spec.require_table, {"given": {}}),
     "spec.read_toml": lambda: (spec.read_toml, {"path": Path("main.toml")}),
     "spec.plain": lambda: (spec.plain, {"value": TAKEOFF}),
     "spec.plain_fields": lambda: (spec.plain_fields, {"value": TAKEOFF}),

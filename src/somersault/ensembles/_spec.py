@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, get_type_hints
 
-from somersault._core.checks import file_path, shown
+from somersault._core.checks import file_path
 from somersault._core.errors import SomersaultError
 from somersault.ensembles._plan import Plan, plan
 from somersault.ensembles._vary import Vary
 from somersault.flight import KEYS, Maneuver, Report, flights
 from somersault.robot import KEYS as RUN_KEYS
 from somersault.robot import parse_runs
-from somersault.spec import Unfit, read_as, read_toml, structured, structured_within
+from somersault.spec import Unfit, read_as, read_toml, require_table, structured, structured_within
 
 _ACCURACY = 1e-7
 _HINTS = get_type_hints(Vary)
@@ -104,8 +104,7 @@ def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
     SomersaultError
         Naming the key, for what does not fit.
     """
-    if not isinstance(given, Mapping):
-        raise SomersaultError(f"a SPEC is a table of keys, and not {shown(given)}")
+    require_table(given)
     for key in _TABLES:
         if not isinstance(given.get(key, {}), Mapping):
             raise SomersaultError(f"{key} must be a table; write [{key}]")

@@ -5,7 +5,6 @@ Reading gives the fields of a `Maneuver`, writing takes one; neither needs to kn
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -13,7 +12,6 @@ from typing import Any, cast
 
 import numpy as np
 
-from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError
 from somersault.flight._spec_motion import Compliance, OffNominal, Recording
 from somersault.flight._takeoff import Takeoff
@@ -23,9 +21,11 @@ from somersault.motion import Path as Quintics
 from somersault.spec import (
     Misplaced,
     Unfit,
+    model_beside,
     plain,
     plain_fields,
     read_as,
+    require_table,
     structured,
     structured_within,
     written_as,
@@ -71,8 +71,7 @@ def parsed(given: Mapping[str, Any], beside: Path) -> dict[str, Any]:
     SomersaultError
         Naming the key, for what does not fit.
     """
-    if not isinstance(given, Mapping):
-        raise SomersaultError(f"a SPEC is a table of keys, and not {shown(given)}")
+    require_table(given)
     keys = structured(_found(given, beside), Keys)
     body = load(_body(keys), keys.axes, cast("Base | None", keys.base))
     joints = dict(keys.joints)
@@ -102,9 +101,8 @@ def _body(keys: Keys) -> str | Model:
 def _found(given: Mapping[str, Any], beside: Path) -> dict[str, Any]:
     """The tables with their files beside the SPEC."""
     tables = dict(given)
-    name = tables.get("model")
-    if isinstance(name, str) and Path(name).suffix and os.path.isfile(beside / name):
-        tables["model"] = str(beside / name)
+    if "model" in tables:
+        tables["model"] = model_beside(tables["model"], beside)
     if isinstance(tables.get("takeoff"), Mapping) and "joints" in tables["takeoff"]:
         raise SomersaultError("takeoff.joints is no key of a SPEC; write [joints.NAME]")
     joints = tables.get("joints")

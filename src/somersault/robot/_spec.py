@@ -12,7 +12,15 @@ from somersault._core.errors import SomersaultError
 from somersault.robot._control import Control, End, Errors, Flip, Hips, Plant, Push, Running, Start
 from somersault.robot._robot import Robot
 from somersault.robot._runs import Runs
-from somersault.spec import Unfit, read_as, read_toml, structured, structured_within
+from somersault.spec import (
+    Unfit,
+    model_beside,
+    read_as,
+    read_toml,
+    require_table,
+    structured,
+    structured_within,
+)
 
 
 @dataclass(frozen=True)
@@ -75,8 +83,7 @@ def parse_runs(given: Mapping[str, Any], beside: Path) -> Runs:
     SomersaultError
         Naming the key, for what does not fit.
     """
-    if not isinstance(given, Mapping):
-        raise SomersaultError(f"a SPEC is a table of keys, and not {shown(given)}")
+    require_table(given)
     folder = file_path("beside", beside)
     if "robot" not in given:
         raise SomersaultError('robot is missing; a SPEC of a run has robot = "biped", or a file')
@@ -92,10 +99,7 @@ def _found(robot: Any, beside: Path) -> Any:
     table = {"model": robot} if isinstance(robot, str) else robot
     if not isinstance(table, Mapping):
         raise SomersaultError(f"robot must be a name, a file or a table, and is {shown(robot)}")
-    model = table.get("model")
-    if isinstance(model, str) and Path(model).suffix and (beside / model).is_file():
-        return {**table, "model": str(beside / model)}
-    return table
+    return {**table, "model": model_beside(table["model"], beside)} if "model" in table else table
 
 
 def _hip(value: Any, _: Any) -> tuple[str, str, str]:

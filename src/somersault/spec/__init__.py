@@ -10,15 +10,17 @@ from somersault.spec._tables import (
     structured_within,
     written_as,
 )
-from somersault.spec._toml import read_toml, write_toml
+from somersault.spec._toml import model_beside, read_toml, require_table, write_toml
 
 __all__ = [
     "Misplaced",
     "Unfit",
+    "model_beside",
     "plain",
     "plain_fields",
     "read_as",
     "read_toml",
+    "require_table",
     "structured",
     "structured_within",
     "write_toml",

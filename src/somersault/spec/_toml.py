@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from somersault._core.checks import file_path
+from somersault._core.checks import file_path, shown
 from somersault._core.errors import SomersaultError
 from somersault._core.files import read_bytes, write
 
@@ -72,3 +72,37 @@ def write_toml(path: Path, tables: Mapping[str, Any]) -> None:
     if os.path.isdir(file):
         raise SomersaultError(f"{file} is a folder; give the name of a file")
     write(file, text)
+
+
+def require_table(given: Any) -> None:
+    """SomersaultError where what is given for a SPEC is no table.
+
+    Parameters
+    ----------
+    given : object
+
+    Raises
+    ------
+    SomersaultError
+        For what is no mapping.
+    """
+    if not isinstance(given, Mapping):
+        raise SomersaultError(f"a SPEC is a table of keys, and not {shown(given)}")
+
+
+def model_beside(name: Any, folder: Path) -> Any:
+    """A model's name as a SPEC has it, or its file in the SPEC's folder where one is there.
+
+    Parameters
+    ----------
+    name : object
+        What is no text stays as it is.
+    folder : pathlib.Path
+
+    Returns
+    -------
+    object
+    """
+    if isinstance(name, str) and Path(name).suffix and os.path.isfile(folder / name):
+        return str(folder / name)
+    return name
