@@ -7,8 +7,6 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
-import numpy as np
-
 from somersault._core.errors import SomersaultError
 
 T = TypeVar("T")
@@ -34,6 +32,8 @@ def one_of(what: str, value: Any, there: Iterable[str]) -> str:
 
 def truth(what: str, value: Any) -> bool:
     """True or false; SomersaultError naming `what` for anything that merely counts as one."""
+    import numpy as np  # only where it is wanted: much is asked for without any numerics
+
     if not isinstance(value, bool | np.bool_):
         raise SomersaultError(f"{what} must be true or false, and is {shown(value)}")
     return bool(value)
@@ -59,6 +59,8 @@ def file_path(what: str, value: Any) -> Path:
 
 def whole_number(what: str, value: Any, least: int, most: int) -> int:
     """A whole number within bounds; SomersaultError naming `what`."""
+    import numpy as np
+
     right = isinstance(value, int | np.integer) and not isinstance(value, bool)
     if not right or not least <= value <= most:
         raise SomersaultError(

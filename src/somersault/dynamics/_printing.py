@@ -88,7 +88,7 @@ def _too_long(model: Model) -> SomersaultError:
     return SomersaultError(
         f"the LaTeX of {model.name} would fill pages ({len(model.joints)} joints); models of up to "
         f"{MOST_JOINTS} hinges and slides, if they move in a plane or nearly, can be printed so, "
-        "others as C code"
+        "others with --c"
     )
 
 
