@@ -13,7 +13,7 @@ from pathlib import Path
 
 import psutil
 import pytest
-from test_ensembles_killed import SPEC, same, spec, whole_of
+from test_ensembles_killed import SPEC, hearing, same, spec, whole_of
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 
@@ -59,15 +59,12 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def begun(
-    arguments: Sequence[str], folder: Path, handler: signal.Handlers = signal.SIG_DFL
-) -> subprocess.Popen[str]:
+def begun(arguments: Sequence[str], folder: Path, how: str = "SIG_DFL") -> subprocess.Popen[str]:
     """A command in a process group of its own, as a shell begins it."""
     return subprocess.Popen(
-        [sys.executable, "-m", "somersault", *(word.format(folder) for word in arguments)],
+        hearing([sys.executable, "-m", "somersault", *(w.format(folder) for w in arguments)], how),
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8", process_group=0,
         env={**os.environ, "TMPDIR": str(folder / "temporary")},
-        preexec_fn=lambda: signal.signal(signal.SIGINT, handler),
     )  # fmt: skip
 
 
@@ -156,7 +153,7 @@ def test_a_signal_to_terminate_does_the_same(folder: Path) -> None:
 
 def test_a_command_in_the_background_goes_on(folder: Path) -> None:
     """A shell has it ignore interrupts, which are for what is in front."""
-    program = begun(["map", "human_layout"], folder, signal.SIG_IGN)
+    program = begun(["map", "human_layout"], folder, "SIG_IGN")
     deadline = time.monotonic() + PATIENCE
     while program.poll() is None and time.monotonic() < deadline:
         program.send_signal(signal.SIGINT)

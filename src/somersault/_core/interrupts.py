@@ -8,6 +8,7 @@ being written, ends the child processes, removes what is only temporary, and end
 
 from __future__ import annotations
 
+import atexit
 import os
 import signal
 import sys
@@ -39,6 +40,9 @@ def heed(signals: Sequence[signal.Signals] = _TO_STOP, last_words: str = "") -> 
         signal.signal(s, lambda number, frame: None)
     watch = threading.Thread(target=_watch, args=(receiving, heeded, last_words), daemon=True)
     watch.start()
+    atexit.register(_finish, heeded)
+    # What cleans up after a program that was ended would say that there was something to clean up.
+    sys.warnoptions.append("ignore:resource_tracker:UserWarning")
     if signal.SIGINT in heeded:
         _mask_interrupts("SIG_BLOCK")  # in this thread, those it starts, and all children
 
@@ -94,6 +98,13 @@ def _mask_interrupts(how: str) -> set[int] | None:
     if not hasattr(signal, "pthread_sigmask"):
         return None
     return signal.pthread_sigmask(getattr(signal, how), [signal.SIGINT])
+
+
+def _finish(heeded: Sequence[signal.Signals]) -> None:
+    """All is done, and Python puts its things away: its own handlers too, so that a signal would
+    end the process in the middle of that, with another exit code."""
+    for s in heeded:
+        signal.signal(s, signal.SIG_IGN)
 
 
 def _watch(receiving: int, heeded: Sequence[int], last_words: str) -> None:

@@ -283,10 +283,7 @@ class Maneuver(Variants):
         0.5
         """
         file = check_file(path, (".toml",))
-        try:
-            write_toml(file, tables(self, file))
-        except OSError as trouble:
-            raise SomersaultError(f"{file} cannot be written ({trouble.strerror})") from None
+        write_toml(file, tables(self, file))
 
     # -------------------------------------------------------------------- other maneuvers
 

@@ -60,7 +60,7 @@ def write_toml(path: Path, tables: Mapping[str, Any]) -> None:
     Raises
     ------
     SomersaultError
-        For what is no path or a folder, and what TOML cannot hold.
+        For what is no path or a folder, what cannot be written, and what TOML cannot hold.
     """
     import tomli_w
 
@@ -71,7 +71,12 @@ def write_toml(path: Path, tables: Mapping[str, Any]) -> None:
     file = file_path("path", path)
     if os.path.isdir(file):
         raise SomersaultError(f"{file} is a folder; give the name of a file")
-    write(file, text)
+    try:
+        write(file, text)
+    except OSError as trouble:
+        raise SomersaultError(
+            f"{file} cannot be written ({trouble.strerror}); give another place"
+        ) from None
 
 
 def require_table(given: Any) -> None:
