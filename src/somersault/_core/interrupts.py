@@ -41,8 +41,6 @@ def heed(signals: Sequence[signal.Signals] = _TO_STOP, last_words: str = "") -> 
     watch = threading.Thread(target=_watch, args=(receiving, heeded, last_words), daemon=True)
     watch.start()
     atexit.register(_finish, heeded)
-    # What cleans up after a program that was ended would say that there was something to clean up.
-    sys.warnoptions.append("ignore:resource_tracker:UserWarning")
     if signal.SIGINT in heeded:
         _mask_interrupts("SIG_BLOCK")  # in this thread, those it starts, and all children
 
@@ -58,8 +56,11 @@ def children_unaware() -> Iterator[None]:
     if in_charge:
         signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
     before = _mask_interrupts("SIG_BLOCK")
-    # It unblocks interrupts when it starts, for this thread and what that begins later.
+    # It unblocks interrupts when it starts, for this thread and what that begins later; and when
+    # it cleans up after a program that was ended, it would warn of having had to.
+    sys.warnoptions.append("ignore")  # which it is started with
     resource_tracker.ensure_running()
+    sys.warnoptions.remove("ignore")
     _mask_interrupts("SIG_BLOCK")
     try:
         yield

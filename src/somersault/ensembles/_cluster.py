@@ -10,7 +10,6 @@ from __future__ import annotations
 import asyncio
 import os
 import signal
-import sys
 from collections.abc import Iterator, Mapping
 from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager, suppress
@@ -67,7 +66,6 @@ def on_cluster(
         with ExitStack() as open_now:
             folder = open_now.enter_context(temporary_folder())
             with children_unaware():  # of interrupts: the program ends them
-                _track_quietly()
                 cluster = LocalCluster(
                     n_workers=workers, threads_per_worker=1, processes=True, host="127.0.0.1",
                     dashboard_address=None, silence_logs="CRITICAL", local_directory=str(folder),
@@ -77,18 +75,6 @@ def on_cluster(
                 open_now.enter_context(_ended_at_once(cluster))
             client = open_now.enter_context(Client(cluster))
             _carry(client, plan, chunks, left, put, advance, file, each, "this machine")
-
-
-def _track_quietly() -> None:
-    """Begin the process of multiprocessing that cleans up after a program that was ended; without
-    the warning that it would give, for nothing has leaked."""
-    from multiprocessing import resource_tracker
-
-    sys.warnoptions.append("ignore")  # which it is started with
-    try:
-        resource_tracker.ensure_running()
-    finally:
-        sys.warnoptions.remove("ignore")
 
 
 @contextmanager
