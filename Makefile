@@ -4,6 +4,8 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 JOBS ?= auto
+# Each process of the tests has a core; threads of linear algebra would only get in their way.
+PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS)
 
 .PHONY: reproduce test slow check bench docs pins clean
 .DEFAULT_GOAL := reproduce
@@ -15,10 +17,10 @@ report/claims.json: $(VENV)/.package $(shell find src -type f -not -name '*.pyc'
 	touch $@
 
 test: $(VENV)/.test
-	$(BIN)/python -m pytest -n $(JOBS) -m "not slow"
+	$(PYTEST) -m "not slow"
 
 slow: $(VENV)/.test
-	$(BIN)/python -m pytest -n $(JOBS) -m slow
+	$(PYTEST) -m slow
 
 check: $(VENV)/.test
 	$(BIN)/ruff check .
