@@ -14,13 +14,10 @@ from somersault.attitude import AXES, Axes
 from somersault.model._bodies import GROUND, Body, Follow, Joint, speed_names
 from somersault.model._types_given import check_types
 
-MOST_SPEEDS = 300  # of joints: their equations take some minutes to compile
+MOST_SPEEDS = 150  # of joints: what a command derives and compiles takes up to a minute
 _ALONG = 1 - 1e-12  # cosine to the normal of a plane from which on a hinge turns in the plane
 _LIGHTEST, _HEAVIEST = 1e-6, 1e4  # kg: a fruit fly, and any athlete in grams
-FREE_IT = (
-    "give its base a free joint (in a .bioMod: its root segment translations xyz beside "
-    "rotations xyz)"
-)
+FREE_IT = 'load it with base = "free" (a key of a SPEC too), or give its file a free base'
 
 
 def check(
