@@ -126,6 +126,16 @@ def test_a_command_is_interrupted(name: str, moment: float, folder: Path) -> Non
     interrupted(name, moment, folder)
 
 
+def test_workers_leave_nothing_where_temporary_files_go(folder: Path) -> None:
+    """Not even the folder that dask's scheduler wants for itself."""
+    words = ["ensemble", "{}/few.toml", "--workers", "1", "--json"]
+    (folder / "few.toml").write_text(SPEC.format(size=4))
+    program = begun(words, folder)
+    _, err = program.communicate(timeout=PATIENCE)
+    assert program.returncode == 0, err
+    nothing_is_left(program, folder)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_command_is_interrupted_at_any_moment(

@@ -65,6 +65,8 @@ def on_cluster(
         each = threads or max(1, cores() // workers)
         with ExitStack() as open_now:
             folder = open_now.enter_context(temporary_folder())
+            # The scheduler's own files too, for which `LocalCluster` takes no folder.
+            open_now.enter_context(dask.config.set({"temporary-directory": str(folder)}))
             with children_unaware():  # of interrupts: the program ends them
                 cluster = LocalCluster(
                     n_workers=workers, threads_per_worker=1, processes=True, host="127.0.0.1",
