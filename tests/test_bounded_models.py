@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -58,8 +59,25 @@ def test_what_repeats_without_end_is_refused(
 ) -> None:
     """By the processor's time or by the clock, whichever is up first."""
     monkeypatch.setattr(limited, limit, 2)
-    with pytest.raises(so.SomersaultError, match=r"^robot\.xml takes more than"):
+    with pytest.raises(so.SomersaultError, match=r"^robot\.xml takes more than 2 s to read"):
         so.load(written(tmp_path, inside=ENDLESS))
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="Windows has no signals")
+@pytest.mark.parametrize(
+    ("program", "words"),
+    [
+        ("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", "SIGSEGV"),
+        ("import os; os.write(1, b'half'); os.abort()", "SIGABRT"),
+        ("raise MemoryError", "exit code 1"),
+    ],
+)
+def test_a_reader_that_dies_is_not_said_to_be_slow(
+    program: str, words: str, tmp_path: Path
+) -> None:
+    (tmp_path / "dies.py").write_text(program)
+    with pytest.raises(limited.Ended, match=rf"ends the program that reads it \({words}\)"):
+        limited.answer(str(tmp_path / "dies.py"))
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes")

@@ -134,6 +134,7 @@ def test_equations_are_written_whole_or_not_at_all(
 ) -> None:
     target = tmp_path / "book.tex"
     assert main(["equations", "book", "--out", str(target)]) == 0
+    capsys.readouterr()
     assert main(["equations", "book"]) == 0
     assert target.read_text() == capsys.readouterr().out
     assert main(["equations", "nothing", "--out", str(tmp_path / "no.tex")]) == 2

@@ -127,6 +127,8 @@ def test_angles_that_look_like_degrees_are_noted(tmp_path: Path) -> None:
         return lambda: so.fly(model, so.Takeoff(spin=3.0, joints={"j": joint}), 0.01)
 
     cases: list[tuple[Callable[[], Any], str]] = [
+        (lambda: so.Takeoff(spin=500), r"takeoff spin is 500 rad/s.*500°/s are 8.727 rad/s"),
+        (lambda: so.Takeoff(angular_velocity=[0, -720, 10]), "takeoff angular_velocity is -720"),
         (lambda: so.Takeoff(tilt=33), r"takeoff tilt is 33 rad.*33° are 0.576 rad"),
         (lambda: so.Takeoff(somersault=-90.0), "takeoff somersault is -90 rad"),
         (flown(doing.locked(80.0)), "joint j: angle is 80 rad"),
@@ -162,9 +164,39 @@ def test_angles_that_are_radians_are_not(tmp_path: Path) -> None:
     model = hinge(tmp_path)
     for angle in (0.5, 6.0, 2 * np.pi * 3, 18.85, -31.42):
         so.Takeoff(somersault=angle)
+        so.Takeoff(spin=angle)
         so.spin(model, pose={"j": angle})
     scaled = so.Vary(sets="takeoff.tilt", values=[10.0, 20.0], scale=np.pi / 180)
     so.ensemble("furrer", so.Takeoff(spin=8.0), 0.01, {"leant": scaled})
+
+
+LIMITED = """<robot name="r"><link name="a"><inertial><mass value="2"/><inertia ixx="1" iyy="1"
+izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link><link name="b"><inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="j"
+type="{}"><parent link="a"/><child link="b"/><axis xyz="0 1 0"/><limit lower="{}" upper="{}"
+effort="1" velocity="1"/></joint></robot>"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "limits", "said"),
+    [
+        ("revolute", (-90, 90), ["j (-90 to 90)"]),
+        ("revolute", (0, 135), ["j (0 to 135)"]),
+        ("revolute", (-1.5, 2), []),
+        ("revolute", (-31.4159, 31.4159), []),
+        ("revolute", (-10000, 10000), []),  # which says that there are none
+        ("prismatic", (-90, 90), []),
+    ],
+)
+def test_limits_that_look_like_degrees_are_noted(
+    kind: str, limits: tuple[float, float], said: list[str], tmp_path: Path
+) -> None:
+    file = tmp_path / "r.urdf"
+    file.write_text(LIMITED.format(kind, *limits))
+    start = "r.urdf: limits of joints are in rad, and these look like degrees: "
+    assert [str(one.message) for one in notes_of(lambda: so.load(file))] == [
+        start + words for words in said
+    ]
 
 
 def test_a_refused_angle_that_looks_like_degrees_says_so() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -39,3 +40,26 @@ def test_a_model_that_is_read_stays(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert main(["models", str(file), "--out", str(file)]) == 2
     assert "mine.xml is read here" in capsys.readouterr().err
     assert file.read_bytes() == before
+
+
+FLIGHT = 'model = "book"\nduration = 0.1\n[takeoff]\nspin = 6.0\n'
+
+
+def test_what_was_written_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As every command says it, on standard output; the JSON of a flight is as it always was."""
+    monkeypatch.chdir(tmp_path)
+    Path("a.toml").write_text(FLIGHT)
+    outputs = ["--out", "a.csv", "--page", "a.html"]
+    assert main(["fly", "a.toml", *outputs]) == 0
+    assert capsys.readouterr().out.endswith("  history: a.csv\n  page: a.html\n")
+    records = []
+    for more in (outputs, []):
+        assert main(["fly", "a.toml", *more, "--json"]) == 0
+        records.append(json.loads(capsys.readouterr().out))
+    assert records[0] == records[1]
+    assert main(["equations", "simplest", "--out", "a.tex"]) == 0
+    assert capsys.readouterr().out == "simplest\n  equations: a.tex\n"
+    assert main(["equations", "simplest"]) == 0
+    assert capsys.readouterr().out == Path("a.tex").read_text()

@@ -61,7 +61,7 @@ def in_the_way(folder: Path, ending: str) -> dict[str, Path]:
         "File name": folder / "new" / long / f"a{ending}",
         "cannot": Path(f"/proc/nowhere/a{ending}"),
         f"folder{ending}": folder / f"folder{ending}",
-        "like those" if ending != ".zarr" else "no ensemble": folder / f"text{ending}",
+        "did not write it" if ending != ".zarr" else "no ensemble": folder / f"text{ending}",
     }
 
 

@@ -12,6 +12,14 @@ from somersault.cli import main
 DIGITS = "9" * 5000
 SPEC = 'model = "book"\nduration = 0.1\n[takeoff]\nspin = 5.0\n'
 MANY = SPEC + '[vary.a]\nadds_to = "takeoff.tilt"\nnormal = [0.0, 0.1]\n[sample]\nsize = 4\n'
+INERTIAL = (
+    '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+    "</inertial>"
+)
+HELD = (
+    f'<robot name="r"><link name="world"/><link name="a">{INERTIAL}</link><joint name="j" '
+    'type="continuous"><parent link="world"/><child link="a"/></joint></robot>'
+)
 NAMES = [
     "", ".", "..", "/", "-", "folder", "folder/", "fifo", "fifo.toml", "fifo.xml", "empty",
     "empty/x.xml", "noise.xml", "noise.toml", "loop", "loop.xml", "loop.toml", "/dev/zero",
@@ -106,3 +114,36 @@ def test_orders(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
 def test_entries_of_the_thesis(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     answered(["reproduce", name, "--out", "report"], capsys)
     assert not Path("report").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (
+            ["models", "--athlete", "heigt=1.7"],
+            "heigt is no key of --athlete; here it",
+        ),
+        (["run", "biped", "--flip", "att=1"], "flip.att is no key of --flip; here it takes at"),
+        (["fly", "latin.toml"], "latin.toml is not UTF-8, as TOML is; save it as that"),
+        (["fly", "fifo.toml"], "'fifo.toml' is a folder, a pipe or a device, and no SPEC file"),
+        (["models", "fifo.xml"], "'fifo.xml' is a folder, a pipe or a device, and no model file"),
+        (["models", "fifo"], "'fifo' is a folder, a pipe or a device, and no model file"),
+        (["fly", "of_fifo.toml"], "fifo.xml' is a folder, a pipe or a device, and no model file"),
+        (["fly", "nothing.toml"], "there is no SPEC file 'nothing.toml'; check the path"),
+        (["models", "nothing.xml"], "there is no model file 'nothing.xml'; check the path"),
+        (["stability", "held.urdf"], 'load it with base = "free"'),
+    ],
+)
+def test_what_is_said_of_a_mistake(
+    words: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if "fifo" in said and not hasattr(os, "mkfifo"):
+        pytest.skip("there are no pipes")
+    Path("latin.toml").write_bytes(SPEC.replace("book", "Bücher").encode("latin-1"))
+    Path("of_fifo.toml").write_text(SPEC.replace("book", "fifo.xml"))
+    Path("held.urdf").write_text(HELD)
+    assert main(words) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("somersault: ")
+    assert error.count("\n") == 1
+    assert said in error

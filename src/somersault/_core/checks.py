@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -18,8 +19,14 @@ def shown(value: Any) -> str:
     try:
         text = " ".join(repr(value).split())
     except Exception:  # an integer of more digits than Python writes; a repr that is not ours
-        text = f"{type(value).__name__} that cannot be written out"
+        text = _unwritten(value)
     return text if len(text) <= _SHOWN else f"{text[:_SHOWN]} …"
+
+
+def _unwritten(value: Any) -> str:
+    if isinstance(value, int):
+        return f"a whole number of about {value.bit_length() * math.log10(2):,.0f} digits"
+    return f"a {type(value).__name__} that cannot be shown"
 
 
 def one_of(what: str, value: Any, there: Iterable[str]) -> str:

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from somersault._core.errors import SomersaultError
 from somersault._core.interrupts import removed_after, unbroken
 
 
@@ -55,6 +56,18 @@ def make_way(path: Path) -> None:
         shutil.rmtree(path)
     elif path.exists() and not path.is_file():
         path.unlink()
+
+
+def check_is_file(what: str, path: str | os.PathLike[str]) -> None:
+    """SomersaultError, calling it `what`, where there is no file: nothing, or something else."""
+    if os.path.isfile(path):  # which, unlike pathlib, takes any name
+        return
+    name = repr(os.fspath(path))
+    if os.path.exists(path):
+        raise SomersaultError(
+            f"{name} is a folder, a pipe or a device, and no {what}; give a {what}"
+        )
+    raise SomersaultError(f"there is no {what} {name}; check the path")
 
 
 def read_bytes(path: Path, most: int = -1) -> bytes:

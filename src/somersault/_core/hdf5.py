@@ -11,17 +11,19 @@ from pathlib import Path
 
 from somersault._core import limited
 from somersault._core.errors import SomersaultError
+from somersault._core.files import check_is_file
 
 _WHOLE = "whole"
 
 
 def require_readable(path: Path) -> None:
     """SomersaultError for a file that HDF5 cannot read, within limits of time and memory."""
-    if not os.path.isfile(path):  # a pipe, say, that nobody writes to
-        raise SomersaultError(f"there is no file {str(path)!r}; check the path")
-    said = limited.answer(__file__, os.path.abspath(path)).decode(errors="replace")
-    if said != _WHOLE:
-        why = said or f"it takes more than {limited.SECONDS} s, or more memory than it may"
+    check_is_file("file", path)  # and no pipe that nobody writes to
+    try:
+        why = limited.answer(__file__, os.path.abspath(path)).decode(errors="replace")
+    except limited.Ended as end:
+        why = f"it {end}"
+    if why != _WHOLE:
         raise SomersaultError(
             f"{path.name} cannot be read as NetCDF: {why}; give a file that was written here"
         )
@@ -40,6 +42,8 @@ def _main(path: str, *limits: str) -> str:
         with h5py.File(path) as file:
             dict(file.attrs)
             file.visititems(read)
+    except MemoryError:
+        return f"it asks for more than {limited.MORE_BYTES / 2**30:g} GB of memory"
     except Exception as trouble:  # whatever HDF5 meets in bytes that are not its own
         return " ".join(str(trouble).split()).rstrip(".")[:200] or type(trouble).__name__
     return _WHOLE

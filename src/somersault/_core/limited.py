@@ -16,12 +16,22 @@ from somersault._core.stages import stage
 SECONDS = 20  # of one processor
 WAIT = 60  # s, where the machine has much else to do
 MORE_BYTES = 2**31  # above what the process takes before it reads
+_TOO_LONG = "takes more than {} s to read"
+
+
+class Ended(Exception):  # noqa: N818
+    """A program ended before it had answered: how, in words that go on from a file's name."""
 
 
 def answer(program: str, *arguments: str) -> bytes:
-    """What a program, a Python file, writes to its standard output; empty if a limit ended it.
+    """What a program, a Python file, writes to its standard output.
 
     Behind its arguments it is given the limits, with which it calls `limit`.
+
+    Raises
+    ------
+    Ended
+        If a limit ended it, or anything else before it had answered.
     """
     limits = [str(x) for x in (SECONDS, WAIT, MORE_BYTES)]
     alike = {
@@ -37,8 +47,20 @@ def answer(program: str, *arguments: str) -> bytes:
                 timeout=WAIT, check=False,
             )  # fmt: skip
     except subprocess.TimeoutExpired:
-        return b""
+        raise Ended(_TOO_LONG.format(WAIT)) from None
+    if done.returncode or not done.stdout:
+        raise Ended(_how(-done.returncode))
     return done.stdout
+
+
+def _how(number: int) -> str:
+    """How a program ended without an answer, by the number of its signal, negative if none."""
+    known = {s.value: s.name for s in signal.Signals}
+    name = known.get(number, f"exit code {-number}")
+    times = {"SIGXCPU": SECONDS, "SIGALRM": WAIT}
+    if name in times:
+        return _TOO_LONG.format(times[name])
+    return f"ends the program that reads it ({name}), perhaps for want of memory"
 
 
 def limit(seconds: str, wait: str, more_bytes: str) -> None:

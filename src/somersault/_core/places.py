@@ -44,8 +44,8 @@ def check_file(path: Any, endings: Sequence[str]) -> Path:
         raise SomersaultError(f"{file} is write-protected; give another name")
     if file.exists() and not _replaceable(file):
         raise SomersaultError(
-            f"{file} is there, and is no {file.suffix} file like those written here; give another "
-            "name, or remove it"
+            f"{file} is there already, and somersault did not write it; give another name, or "
+            "remove it"
         )
     return file
 

@@ -14,6 +14,7 @@ from somersault.cli._outputs import (
     Writing,
     check_apart,
     save_picture,
+    written_lines,
 )
 
 NAME = "ensemble"
@@ -183,7 +184,5 @@ def _page(record: dict[str, Any]) -> list[str]:
         lines.append(
             f"  {which} Sobol' indices of {quantity}{some}: {', '.join(known) or 'not determined'}"
         )
-    for key in ("dataset", "picture", "landings"):
-        if key in record:
-            lines.append(f"  {key}: {record[key]}")
-    return lines
+    names = ("dataset", "picture", "landings")
+    return lines + written_lines({name: record[name] for name in names if name in record})

@@ -37,3 +37,4 @@ def run(chosen: argparse.Namespace) -> None:
         print(text, end="")
     else:
         write(chosen.out, text)
+        print(f"{model.name}\n  equations: {chosen.out}")

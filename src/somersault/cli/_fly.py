@@ -13,6 +13,7 @@ from somersault.cli._outputs import (
     check_apart,
     check_motion_outputs,
     write_motion,
+    written_lines,
 )
 
 if TYPE_CHECKING:
@@ -63,11 +64,11 @@ def run(chosen: argparse.Namespace) -> None:
         raise SomersaultError(
             f"the flight broke off at {flight.landing.time:g} s: {why_broken(flight)}"
         )
-    writing = write_motion(flight, chosen, charts=True, vectors=("momentum",))
+    writing, written = write_motion(flight, chosen, charts=True, vectors=("momentum",))
     if chosen.json:
         print(json.dumps(_record(flight)))
     else:
-        print("\n".join(_page(flight)))
+        print("\n".join([*_page(flight), *written_lines(written)]))
     writing.finish()
 
 

@@ -83,7 +83,7 @@ def _athlete(items: Sequence[str]) -> Model:
             table[key] = float(text)
         except ValueError:
             table[key] = {"true": True, "false": False}.get(text, text)
-    return structured(table, AthleteKeys, "athlete.").model()
+    return structured(table, AthleteKeys, of="--athlete").model()
 
 
 def _record(name: str | Model) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -113,19 +113,29 @@ def check_motion_outputs(chosen: argparse.Namespace) -> None:
         check_page(chosen.page)
 
 
-def write_motion(motion: Flight | Run, chosen: argparse.Namespace, **film: Any) -> Writing:
+def write_motion(
+    motion: Flight | Run, chosen: argparse.Namespace, **film: Any
+) -> tuple[Writing, dict[str, str]]:
     """Write what is asked for of one motion; to be finished when the rest has been told.
 
-    `film` says how it is filmed.
+    `film` says how it is filmed. With it comes what was written: the files by what is in them.
     """
-    writing = Writing()
+    writing, written = Writing(), dict[str, str]()
     if chosen.out is not None:
         with writing:
             motion.save(chosen.out)
+            written["history"] = str(chosen.out)
     if chosen.video is not None:
         with writing:
             motion.film(chosen.video, **film)
+            written["film"] = str(chosen.video)
     if chosen.page is not None:
         with writing:
             motion.page(chosen.page)
-    return writing
+            written["page"] = str(chosen.page)
+    return writing, written
+
+
+def written_lines(written: Mapping[str, str]) -> list[str]:
+    """What people are told of files that were written."""
+    return [f"  {what}: {file}" for what, file in written.items()]

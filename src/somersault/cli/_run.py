@@ -10,7 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 from somersault._core.errors import SomersaultError
 from somersault.cli._assignments import assignments
-from somersault.cli._outputs import add_motion_outputs, check_motion_outputs, write_motion
+from somersault.cli._outputs import (
+    add_motion_outputs,
+    check_motion_outputs,
+    write_motion,
+    written_lines,
+)
 
 if TYPE_CHECKING:
     from somersault.robot import Run, Runs
@@ -59,8 +64,11 @@ def run(chosen: argparse.Namespace) -> None:
 
     check_motion_outputs(chosen)
     ran = run_of(_asked_for(chosen))
-    writing = write_motion(ran, chosen)
-    print(json.dumps(_record(ran)) if chosen.json else "\n".join(_page(ran)))
+    writing, written = write_motion(ran, chosen)
+    if chosen.json:
+        print(json.dumps(_record(ran)))
+    else:
+        print("\n".join([*_page(ran), *written_lines(written)]))
     writing.finish()
 
 
@@ -76,7 +84,7 @@ def _asked_for(chosen: argparse.Namespace) -> Runs:
         runs = replace(runs, duration=chosen.duration)
     if chosen.flip:
         given = assignments("--flip", chosen.flip)
-        structured(given, Flip, "flip")  # refuses what is none of its numbers
+        structured(given, Flip, "flip", "--flip")  # refuses what is none of its numbers
         flip = replace(runs.control.flip, **given)
         runs = replace(runs, control=replace(runs.control, flip=flip))
         if flip.at >= runs.duration:

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from somersault._core.checks import file_path, shown
 from somersault._core.errors import SomersaultError
+from somersault._core.files import check_is_file
 from somersault._core.notes import note
 
 if TYPE_CHECKING:
@@ -63,8 +64,7 @@ def tls_files(
     if key is not None:
         given["tls_client_key"] = str(file_path("key", key))
     for file in given.values():
-        if not os.path.isfile(file):
-            raise SomersaultError(f"there is no certificate or key file {file!r}; check the path")
+        check_is_file("certificate or key file", file)
     security = Security(require_encryption=True, **given)
     _context(security)
     return security

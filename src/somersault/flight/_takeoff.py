@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from somersault._core.checks import by_name, instance
-from somersault._core.degrees import MOST_TURNS, note_degrees
+from somersault._core.degrees import MOST_TURNS, note_degrees, note_degrees_per_second
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import MOST, number, numbers
 from somersault.flight.behaviours import JointTakeoff
@@ -98,6 +98,9 @@ class Takeoff:
             raise SomersaultError(f"takeoff gives {' and '.join(given)}; give one of them")
         if self.spin is not None and number("takeoff spin", self.spin) == 0:
             raise SomersaultError("takeoff spin must be a rate in rad/s that is not zero")
+        for name in ("spin", "tilt_rate", "twist_rate", "angular_velocity"):
+            if getattr(self, name) is not None:
+                note_degrees_per_second(f"takeoff {name}", getattr(self, name))
         if self.spin is None and (self.tilt_rate or self.twist_rate):
             raise SomersaultError("takeoff tilt_rate and twist_rate go with spin; give that too")
         if self.quaternion is not None:

@@ -11,7 +11,9 @@ from pathlib import Path
 from typing import get_args
 
 from somersault._core.checks import one_of, shown
+from somersault._core.degrees import limits_in_degrees
 from somersault._core.errors import SomersaultError
+from somersault._core.files import check_is_file
 from somersault._core.notes import listed, note
 from somersault.attitude import as_axes
 from somersault.model._base import Base, rebased
@@ -126,6 +128,16 @@ def _found(source: str | os.PathLike[str] | Model, base: Base | None) -> Model:
             f"{path.name}: joints drawn outside their ranges stand at the nearer end where nothing "
             f"else is said of them: {listed(outside)}"
         )
+    in_degrees = [
+        f"{joint.name} ({joint.limits[0]:g} to {joint.limits[1]:g})"
+        for joint in model.joints
+        if joint.kind == "hinge" and joint.limits and limits_in_degrees(joint.limits)
+    ]
+    if in_degrees:
+        note(
+            f"{path.name}: limits of joints are in rad, and these look like degrees: "
+            f"{listed(in_degrees)}"
+        )
     return model
 
 
@@ -140,11 +152,11 @@ def _shipped(name: str) -> Model:
 def _read(path: Path, base: Base | None) -> Model:
     ending = path.suffix.lower()
     if not os.path.isfile(path):  # which, unlike pathlib, takes any name
-        if ending == "":
+        if ending == "" and not os.path.exists(path):
             raise SomersaultError(
                 f"no model is called {str(path)!r}: give a file, or one of {', '.join(shipped())}"
             )
-        raise SomersaultError(f"there is no model file {str(path)!r}; check the path")
+        check_is_file("model file", path)
     read = reader(ending)
     if read is None:
         raise SomersaultError(

@@ -35,7 +35,7 @@ class Misplaced(ValueError):  # noqa: N818
     """A key that does not belong in its table; the message begins with it."""
 
 
-def structured(table: Any, kind: type[T], where: str = "") -> T:
+def structured(table: Any, kind: type[T], where: str = "", of: str = "a SPEC") -> T:
     """A dataclass of a table.
 
     Parameters
@@ -46,6 +46,8 @@ def structured(table: Any, kind: type[T], where: str = "") -> T:
         A dataclass whose fields are the keys.
     where : str
         What stands before a key in a message: "takeoff.", say.
+    of : str
+        What the table is a part of, where it is no SPEC: the option of a command, say.
 
     Returns
     -------
@@ -59,7 +61,7 @@ def structured(table: Any, kind: type[T], where: str = "") -> T:
     try:
         return _converter().structure(table, kind)
     except Exception as trouble:
-        raise SomersaultError(_sentence(trouble, where.rstrip("."))) from None
+        raise SomersaultError(_sentence(trouble, where.rstrip("."), of)) from None
 
 
 def structured_within(value: Any, kind: Any) -> Any:
@@ -182,16 +184,20 @@ def _by_default(field: dataclasses.Field[Any], value: Any) -> bool:
 def _number(value: Any, _: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise Unfit("a number", value)
+    return _as_float(value)
+
+
+def _as_float(value: float) -> float:
     try:
         return float(value)
     except OverflowError:
-        raise Unfit("a number", value) from None
+        raise Unfit("a finite number below 1e9", value) from None
 
 
 def _whole(value: Any, _: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise Unfit("a whole number", value)
-    if not float(value).is_integer():
+    if not _as_float(value).is_integer():
         raise Unfit("a whole number", value)
     return int(value)
 
@@ -285,13 +291,13 @@ class _Within(ValueError):  # noqa: N818
         self.name, self.trouble = name, trouble
 
 
-def _sentence(trouble: BaseException, where: str) -> str:
+def _sentence(trouble: BaseException, where: str, of: str) -> str:
     """The first thing that is wrong, by its key."""
     for note in getattr(trouble, "__notes__", ()):
         if hasattr(note, "name"):
             where = _joined(where, str(note.name))
     if isinstance(trouble, _Within):
-        return _sentence(trouble.trouble, _joined(where, trouble.name))
+        return _sentence(trouble.trouble, _joined(where, trouble.name), of)
     if isinstance(trouble, Unfit):
         return f"{where} must be {trouble.wanted}, and is {shown(trouble.value)}"
     if isinstance(trouble, Misplaced):
@@ -300,13 +306,13 @@ def _sentence(trouble: BaseException, where: str) -> str:
     if hasattr(strange, "extra_fields"):
         known = ", ".join(field.name for field in dataclasses.fields(strange.cl))
         key = _joined(where, sorted(strange.extra_fields)[0])
-        return f"{key} is no key of a SPEC; here it takes {known}"
+        return f"{key} is no key of {of}; here it takes {known}"
     if isinstance(trouble, KeyError):
         key = str(trouble.args[0])
         return f"{where if where.rpartition('.')[2] == key else _joined(where, key)} is missing"
     inner = getattr(trouble, "exceptions", None)
     if inner:
-        return _sentence(_worst(inner), where)
+        return _sentence(_worst(inner), where, of)
     if isinstance(trouble, SomersaultError):
         said = str(trouble)
         return said if not where or where.rpartition(".")[2] in said else f"{where}: {said}"

@@ -10,7 +10,7 @@ from typing import Any
 
 from somersault._core.checks import file_path, shown
 from somersault._core.errors import SomersaultError
-from somersault._core.files import read_bytes, write
+from somersault._core.files import check_is_file, read_bytes, write
 
 _MOST_BYTES = 10_000_000
 
@@ -33,8 +33,7 @@ def read_toml(path: Path) -> dict[str, Any]:
         For a file that is not there, is too large, or is not TOML.
     """
     path = file_path("a SPEC", path)
-    if not os.path.isfile(path):  # which, unlike pathlib, takes any name
-        raise SomersaultError(f"there is no SPEC file {str(path)!r}; check the path")
+    check_is_file("SPEC file", path)
     try:
         data = read_bytes(path, _MOST_BYTES + 1)
     except OSError as trouble:
@@ -43,7 +42,9 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise SomersaultError(f"{path.name} is larger than 10 MB, which no SPEC is; check the file")
     try:
         return tomllib.loads(data.decode("utf-8-sig").replace("\r\n", "\n"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+    except UnicodeDecodeError:
+        raise SomersaultError(f"{path.name} is not UTF-8, as TOML is; save it as that") from None
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise SomersaultError(f"{path.name} is not TOML: {error}; correct the file") from None
     except ValueError:  # an integer of more digits than Python reads
         raise SomersaultError(f"{path.name} has a number that is too long; shorten it") from None
@@ -96,7 +97,7 @@ def require_table(given: Any) -> None:
 
 
 def model_beside(name: Any, folder: Path) -> Any:
-    """A model's name as a SPEC has it, or its file in the SPEC's folder where one is there.
+    """A model's name as a SPEC has it, or its place in the SPEC's folder if anything is there.
 
     Parameters
     ----------
@@ -108,6 +109,6 @@ def model_beside(name: Any, folder: Path) -> Any:
     -------
     object
     """
-    if isinstance(name, str) and Path(name).suffix and os.path.isfile(folder / name):
+    if isinstance(name, str) and Path(name).suffix and os.path.exists(folder / name):
         return str(folder / name)
     return name

@@ -72,10 +72,11 @@ def _is_harmless(root: Element) -> bool:
 def _apart(path: Path) -> tuple[Any, list[bool]]:
     import mujoco
 
-    said = limited.answer(_compiled.__file__, os.path.abspath(path))
+    try:
+        said = limited.answer(_compiled.__file__, os.path.abspath(path))
+    except limited.Ended as end:
+        raise SomersaultError(f"{path.name} {end}; make what it repeats or fills smaller") from None
     head, _, binary = said.partition(b"\n")
-    if not head:  # it was ended by one of its limits
-        raise SomersaultError(_too_long(path))
     answer = json.loads(head)
     if "error" in answer:
         raise _refusal(path, answer["error"])
@@ -97,13 +98,6 @@ def _refusal(path: Path, said: str) -> SomersaultError:
     text = re.sub(r"^(XML )?[Ee]rror:\s*", "", text)[:300]
     return SomersaultError(
         f"{path.name} cannot be read as a model: {text or 'it is none'}; correct the file"
-    )
-
-
-def _too_long(path: Path) -> str:
-    return (
-        f"{path.name} takes more than {limited.SECONDS} s to read, or more memory than a model "
-        "gets; make what it repeats or fills smaller"
     )
 
 
