@@ -14,9 +14,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fuzz.meshes import biomesh, dae, obj, ply, stl, vtp
 from robots import ARM, HUB, joint, link, robot
 from scipy.spatial import cKDTree
-from test_mesh_files import CLOSED, CORNER, biomesh, dae, obj, ply, stl, vtp
+from test_mesh_files import CLOSED, CORNER
 
 import somersault as so
 from somersault.history import Recording

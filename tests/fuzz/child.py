@@ -128,9 +128,9 @@ def _ask(reader: Reader, file: Path, rng: np.random.Generator) -> None:
     words = reader.commands[int(rng.integers(len(reader.commands)))]
     out, err = io.StringIO(), io.StringIO()
     with tempfile.TemporaryDirectory() as place:
-        words = tuple(
-            str(file) if word == "FILE" else word.replace("OUT", f"{place}/out") for word in words
-        )
+        places = {"FILE": str(file), "BESIDE": str(file.parent), "OUT": f"{place}/out"}
+        for name, there in places.items():
+            words = tuple(word.replace(name, there) for word in words)
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
             code = command_line(words)
         left = sorted(os.listdir(place))

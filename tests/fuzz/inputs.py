@@ -35,11 +35,13 @@ class Input:
     def write(self, folder: Path) -> Path:
         """Write it to an empty folder; the path of the file to read."""
         for name, data in self.files.items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
             if data is None:
                 os.mkfifo(folder / name)
             else:
                 (folder / name).write_bytes(data)
         main = folder / self.name
+        main.parent.mkdir(parents=True, exist_ok=True)
         strange = self.done[0] if self.done and self.done[0] in _STRANGE else ""
         if strange == "folder":
             main.mkdir()
@@ -65,7 +67,7 @@ def spoilt(reader: Reader, seed: int, number: int) -> Input:
     done: list[str] = []
     for _ in range(int(pick(rng, (1, 1, 1, 2, 2, 3, 4)))):
         data = _changed(reader, data, rng, done)[:_MOST_BYTES]
-    if rng.uniform() < 0.03:
+    if reader.endings and rng.uniform() < 0.03:
         stem = pick(rng, (name.rpartition(".")[0], *_STEMS))
         new = stem + pick(rng, reader.endings)
         if new not in folder:

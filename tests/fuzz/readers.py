@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
+import shutil
+import stat
+import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,9 +15,11 @@ from typing import Any
 import numpy as np
 
 import somersault as so
+from somersault.view import picture
 
-from . import good, mutations, trees
+from . import good, good_meshes, good_stores, mutations, trees
 from .good import Folder
+from .good_meshes import MODELS
 from .mutations import Change
 
 Use = Callable[[Any, np.random.Generator], None]
@@ -24,8 +30,9 @@ class Reader:
     """One reader.
 
     `read` has the path of the file; what it gives is looked at by `check` each time, and by `use`,
-    which may take half a second, now and then. `command` is what the command line is asked for,
-    with FILE and OUT in the place of the file and of a place to write to.
+    which may take half a second, now and then. `commands` are what the command line is asked for,
+    with FILE, BESIDE and OUT in the place of the file, of its folder and of a place to write to.
+    Files without `endings` keep their names.
     """
 
     name: str
@@ -160,6 +167,65 @@ def _column_sound(columns: Any) -> None:
     assert all(np.all(np.isfinite(row)) for row in columns)
 
 
+def _seen(path: Path) -> so.Model:
+    """The model that names a mesh, once all there is to see of it has been read."""
+    model = so.load(next(file for name in MODELS if (file := path.parent / name).exists()))
+    for body in model.bodies:
+        for shape in body.shapes:
+            shape.solids()
+    return model
+
+
+def _drawn(model: so.Model) -> None:
+    """What can be read of it is finite, and the rest has been left out."""
+    sound_model(model)
+    for row in model.solids:
+        for solid in row:
+            assert np.all(np.isfinite(solid.triangles.vertices))
+
+
+def _pictured(model: so.Model, rng: np.random.Generator) -> None:
+    flight = so.fly(model, so.Takeoff(spin=5.0), 0.05, samples=3)
+    with tempfile.TemporaryDirectory() as place:
+        picture(flight, Path(place, "picture.png"))
+
+
+def _opened(path: Path) -> Any:
+    return so.Ensemble.open(path).dataset.load()
+
+
+def _healed(path: Path) -> Any:
+    """What is left of a store, and the rest run again, in a copy of it; as it is, it is opened only
+    if nothing is lost."""
+    damaged = next(place for place in path.parents if place.name == good_stores.STORE)
+    try:
+        _as_it_was(_opened(damaged))
+    except so.SomersaultError as mistake:
+        one_sentence(mistake)
+    with tempfile.TemporaryDirectory() as place:
+        store = Path(place, good_stores.STORE)
+        shutil.copytree(damaged, store, symlinks=True, copy_function=_copied)
+        dataset = good_stores.carried_on(store)
+        assert os.listdir(place) == [store.name]
+        _as_it_was(_opened(store))
+    return dataset
+
+
+def _copied(source: str, to: str) -> None:
+    if stat.S_ISFIFO(os.lstat(source).st_mode):
+        os.mkfifo(to)
+    else:
+        shutil.copy2(source, to, follow_symlinks=False)
+
+
+def _as_it_was(dataset: Any) -> None:
+    """To the last bit the numbers that were computed."""
+    whole = good_stores.whole()
+    assert set(dataset.variables) == set(whole.variables)
+    for name, variable in whole.variables.items():
+        np.testing.assert_array_equal(dataset[name].values, variable.values, err_msg=str(name))
+
+
 XML: tuple[Change, ...] = (*(trees.changed,) * 5, *mutations.TEXT[::2], trees.deep)
 TOML = (*mutations.TEXT, *(mutations.literal,) * 6)
 TABLES = (".csv", ".tsv", ".txt", ".mot", ".sto", ".CSV", ".nc", "")
@@ -246,5 +312,19 @@ READERS = {
             _nothing,
             endings=TABLES,
         ),
+        Reader(
+            "mesh",
+            good_meshes.meshes,
+            _seen,
+            (*mutations.TEXT, *(trees.changed,) * 4, trees.deep),
+            _drawn,
+            _pictured,
+            (("fly", "BESIDE/main.toml", "--page", "OUT.html"),),
+            endings=(),  # by another name it would not be found
+            share=2,
+        ),
+        Reader("chunk", good_stores.chunks, _healed, (), _as_it_was, endings=()),
+        Reader("metadata", good_stores.metadata, _healed, TOML, _as_it_was, endings=()),
+        Reader("netcdf", good_stores.netcdf, _opened, (), _nothing, endings=(".nc", "")),
     )
 }

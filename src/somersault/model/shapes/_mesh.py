@@ -10,10 +10,14 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
+from somersault._core.numbers import MOST
 from somersault.model.shapes._shape import Shape, Triangles, strips
 
 _CLOSE = 1e-6  # of a mesh's size: vertices nearer than this are one
 _EDGE = np.cos(np.radians(40.0))  # faces that meet more sharply have an edge between them
+
+_CROWD = 128  # faces at a vertex, beyond which they are so narrow that each keeps its own normal
+_PAIRS = 2**22  # of faces that share a vertex, looked at at once
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -30,7 +34,8 @@ class Mesh(Shape):
     Raises
     ------
     SomersaultError
-        For no triangle at all, vertices that are not finite, and corners that there are not.
+        For no triangle at all, vertices that are not finite or beyond 1e9 m, and corners that there
+        are not.
     """
 
     vertices: Array = field(repr=False)
@@ -41,8 +46,8 @@ class Mesh(Shape):
         super().__post_init__()
         vertices = np.array(self.vertices, float)
         faces = np.array(self.faces)
-        if vertices.ndim != 2 or vertices.shape[1] != 3 or not np.all(np.isfinite(vertices)):
-            raise SomersaultError("a mesh needs finite vertices, three numbers each")
+        if vertices.ndim != 2 or vertices.shape[1] != 3 or not np.all(np.abs(vertices) <= MOST):
+            raise SomersaultError("a mesh needs finite vertices below 1e9, three numbers each")
         if faces.ndim != 2 or faces.shape[1] != 3 or not faces.size or faces.dtype.kind not in "iu":
             raise SomersaultError("a mesh needs faces, the places of three vertices each")
         if faces.min() < 0 or faces.max() >= len(vertices):
@@ -97,20 +102,25 @@ def _with_area(vertices: Array, faces: Array) -> tuple[Array, Array]:
 
 def _corner_normals(across: Array, faces: Array) -> Array:
     """Unit normals (3 faces, 3) at the corners of faces with the normals `across`: those of all
-    faces there that meet the own one smoothly, by area."""
+    faces there that meet the own one smoothly, by area. In a crowd they are the own one's."""
     flat = across / np.linalg.norm(across, axis=1, keepdims=True)
     corners = faces.reshape(-1)
     order = np.argsort(corners, kind="stable")
     _, starts, counts = np.unique(corners[order], return_index=True, return_counts=True)
-    # Every pair of faces that share a vertex: for each corner, all the corners at its vertex.
-    group = np.repeat(np.arange(len(counts)), counts)
-    many = counts[group]
-    own = np.repeat(order, many)
-    within = np.arange(len(own)) - np.repeat(np.cumsum(many) - many, many)
-    other = order[np.repeat(starts[group], many) + within]
-    smooth = np.einsum("ij,ij->i", flat[own // 3], flat[other // 3]) > _EDGE
+    crowded = np.repeat(counts > _CROWD, counts)
+    first = np.where(crowded, np.arange(len(order)), np.repeat(starts, counts))
+    many = np.where(crowded, 1, np.repeat(counts, counts))
+    ends = np.cumsum(many)
     normals = np.zeros((len(corners), 3))
-    np.add.at(normals, own[smooth], across[other[smooth] // 3])
+    for some in np.split(
+        np.arange(len(order)), np.searchsorted(ends, np.arange(_PAIRS, ends[-1], _PAIRS))
+    ):
+        # Every pair of faces that share a vertex: for each corner, all the corners at its vertex.
+        own = np.repeat(order[some], many[some])
+        within = np.arange(len(own)) - np.repeat(np.cumsum(many[some]) - many[some], many[some])
+        other = order[np.repeat(first[some], many[some]) + within]
+        smooth = np.einsum("ij,ij->i", flat[own // 3], flat[other // 3]) > _EDGE
+        np.add.at(normals, own[smooth], across[other[smooth] // 3])
     return normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
 

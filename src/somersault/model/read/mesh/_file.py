@@ -87,17 +87,19 @@ class MeshFile(Shape):
         form = np.array(self.form)
         turned = np.linalg.det(form) < 0
         try:
+            with np.errstate(all="ignore"):  # `Mesh` looks at what comes out
+                placed = [part.vertices @ form.T for part in self.contents.parts]
             return [
                 coarser(
                     Mesh(
-                        vertices=part.vertices @ form.T,
+                        vertices=vertices,
                         faces=part.faces[:, ::-1] if turned else part.faces,
                         color=part.color or self.color,
                         **pose,
                     ),
                     _MOST_TRIANGLES,
                 )
-                for part in self.contents.parts
+                for part, vertices in zip(self.contents.parts, placed, strict=True)
             ]
         except SomersaultError as error:
             raise SomersaultError(f"{self.named} ({error})") from None

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from importlib import import_module
 
+import numpy as np
+
 from somersault._core.errors import SomersaultError
 from somersault.model.read.mesh._part import Part
 
@@ -32,10 +34,11 @@ def parts_of(ending: str, data: bytes) -> list[Part]:
     read: Callable[[bytes], Iterable[Part]] = module.parts
     parts: list[Part] = []
     try:
-        for part in read(data):
-            parts += [part] if len(part.faces) else []
-            if sum(len(one.faces) for one in parts) > _MOST_TRIANGLES:
-                raise SomersaultError(f"has more than {_MOST_TRIANGLES} triangles")
+        with np.errstate(all="ignore"):  # `Mesh` looks at what comes out
+            for part in read(data):
+                parts += [part] if len(part.faces) else []
+                if sum(len(one.faces) for one in parts) > _MOST_TRIANGLES:
+                    raise SomersaultError(f"has more than {_MOST_TRIANGLES} triangles")
     except SomersaultError:
         raise
     except (ValueError, IndexError, KeyError, OverflowError, MemoryError, RecursionError):

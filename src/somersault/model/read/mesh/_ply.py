@@ -82,6 +82,8 @@ def _columns(element: _Element, body: bytes, at: int) -> tuple[dict[str, list[Ar
             if length is not None:
                 count = int(np.frombuffer(body, length, 1, at)[0])
                 at += length.itemsize
+                if count < 0:
+                    raise ValueError("a list without a length")
             columns[name].append(np.frombuffer(body, kind, count, at))
             at += count * kind.itemsize
     return columns, at
