@@ -125,6 +125,26 @@ def test_a_map_is_drawn_as_a_map(twist, tmp_path):
     assert np.array_equal(landed, errors <= within)
 
 
+def test_without_a_landing_to_compare_with_colours_say_how_flights_ended(tmp_path, monkeypatch):
+    angles = {"arms": so.Vary(sets="joints.shoulder.angle", samples=[0.8, 1.4, 2.0, 1.2])}
+    held = so.JointTakeoff.sprung(angle=1.4, K=1.0, hold=True)
+    takeoff = so.Takeoff(spin=8.64, tilt=0.01, joints={"shoulder": held})
+    flown = so.ensemble("furrer", takeoff, 2.0, angles, until="quarter twist")
+    flew = flown.dataset.ended.values == 0
+    assert 0 < flew.sum() < 4  # both kinds are there
+    said = []
+    monkeypatch.setattr("somersault.view.landings_picture", lambda *given, **_: said.append(given))
+    flown.landings(tmp_path / "a.png")
+    ((poses, _, colors, words, key),) = said
+    assert key == [
+        (BLUE, f"{flew.sum()} of 4 flew for 2 s"),
+        (VERMILION, f"{(~flew).sum()} ended at a quarter twist"),
+    ]
+    assert colors == [BLUE if one else VERMILION for one in flew]
+    assert words == [f"{time:.3g} s" for time in flown.dataset.time.values]
+    np.testing.assert_allclose(poses.angles[:, 2], flown.dataset.twist.values, atol=1e-6)
+
+
 def test_superimposed_poses_that_agree_are_dark(tmp_path):
     flight = so.fly("furrer", so.Takeoff(spin=8.6), 0.5, samples=2)
     rows = {

@@ -91,6 +91,22 @@ def test_a_scene_of_collada_stands_in_its_frames_and_unit() -> None:
     np.testing.assert_allclose(two.vertices, 0.01 * POINTS, atol=1e-7)
 
 
+@pytest.mark.parametrize("up", ["X_UP", "Y_UP", "Z_UP"])
+def test_a_scene_of_collada_is_not_turned_by_what_it_says_is_up(tmp_path: Path, up: str) -> None:
+    """Robots' files are written for RViz, Gazebo and pinocchio (coal), none of which turns them."""
+    file = stored(tmp_path, dae(POINTS, TRIANGLES, up=up), "a.dae")
+    (part,) = parts_of(".dae", file.read_bytes())
+    np.testing.assert_allclose(part.vertices, POINTS, atol=1e-15)
+    coal = pytest.importorskip("coal", reason="pinocchio, which reads meshes by coal, is optional")
+    theirs = coal.MeshLoader().load(str(file)).vertices()
+    used = POINTS[np.unique(TRIANGLES)]  # it sorts them
+    np.testing.assert_allclose(in_order(theirs), in_order(used), atol=1e-6)
+
+
+def in_order(points: Any) -> np.ndarray:
+    return np.array(sorted(np.unique(np.round(points, 6), axis=0).tolist()))
+
+
 def test_a_mesh_without_its_material_is_seen_all_the_same() -> None:
     (part,) = parts_of(".dae", dae(POINTS, POLYGONS, effect="nowhere"))
     assert (len(part.faces), part.color) == (3, None)

@@ -124,7 +124,7 @@ def vtp(
 
 DAE = """<?xml version="1.0" encoding="utf-8"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
-<asset><unit meter="{unit}"/><up_axis>Y_UP</up_axis></asset>
+<asset><unit meter="{unit}"/><up_axis>{up}</up_axis></asset>
 <library_effects><effect id="e"><profile_COMMON><technique sid="t"><lambert><diffuse>
 <color>1 0.5 0 1</color></diffuse></lambert></technique></profile_COMMON></effect></library_effects>
 <library_materials><material id="m"><instance_effect url="#{effect}"/></material>
@@ -149,7 +149,8 @@ def dae(points: np.ndarray, polygons: Any, **more: Any) -> bytes:
     corners = " ".join(str(k) for face in polygons for k in face)
     sizes = " ".join(str(len(face)) for face in polygons)
     options = {
-        "unit": 1, "effect": "e", "nodes": "", "scene": f'<node id="n">{SHOWN}</node>',
+        "unit": 1, "up": "Y_UP", "effect": "e", "nodes": "",
+        "scene": f'<node id="n">{SHOWN}</node>',
         "primitive": f'<polylist material="x" count="{len(polygons)}"><input semantic="VERTEX" '
         f'source="#v" offset="0"/><vcount>{sizes}</vcount><p>{corners}</p></polylist>',
     }  # fmt: skip

@@ -19,12 +19,16 @@ from somersault.ensembles._plan import SAMPLE, Plan
 from somersault.ensembles._summary import within
 from somersault.history import History, Recording
 from somersault.simulation import ENDED, LANDING_ERROR, Numbers
+from somersault.view.style import BLUE, GREY, LINES, VERMILION
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _MOST = 240
 _RUN = "run"
+_SAME = 1e-9  # of their time: runs that end so close together end at once
+
+Key = list[tuple[str, str]]
 
 
 @runtime_checkable
@@ -34,6 +38,9 @@ class Shown(Protocol):
     def history(self, values: Numbers) -> History:
         """Of one run, to its end."""
 
+    def ending_in_words(self, ending: str) -> str:
+        """What runs did that ended so: "flew for 2 s"."""
+
 
 def landings(
     data: xr.Dataset, plan: Plan | None, path: str | os.PathLike[str], good: Any,
@@ -41,7 +48,6 @@ def landings(
 ) -> None:  # fmt: skip
     """As `Ensemble.landings` has it."""
     from somersault.view import landings_picture
-    from somersault.view.style import BLUE, GREY, VERMILION
 
     check_file(path, (".png",))
     simulation = _require_plan(data, plan).simulation
@@ -60,31 +66,58 @@ def landings(
     lost, there = failed(runs[ENDED]).values, run_already(runs[ENDED]).values
     if not np.any(there & ~lost):
         raise SomersaultError("none of these flights has a landing to be drawn")
-    if good is not None:
-        landed = (
-            _picked(good.rename("good").to_dataset(), plan.dims, numbers)["good"].values & ~lost
-        )
-    else:
-        landed = ~lost if tolerance is None else within(runs, tolerance).values
     order = np.flatnonzero(there & ~lost)
     errors = runs[LANDING_ERROR].values if LANDING_ERROR in runs else None
     if columns is None and errors is not None:
         order = order[np.argsort(errors[order], kind="stable")]
-    poses = _poses(plan, simulation, numbers[order])
-    colors = [BLUE if landed[k] else VERMILION for k in order]
-    words = [f"{numbers[k]:,}" if errors is None else f"{errors[k]:.2g} rad" for k in order]
-    what = "did not fail" if good is None and tolerance is None else "landed"
-    if tolerance is not None:
-        what += f": landing error at most {tolerance:g} rad"
-    key = [(BLUE, f"{int(landed[order].sum())} of {len(order)} {what}")]
-    if not landed[order].all():
-        key.append((VERMILION, f"{int((~landed[order]).sum())} did not land"))
+    if good is not None:
+        chosen = _picked(good.rename("good").to_dataset(), plan.dims, numbers)["good"].values
+        colors, key = _of_two(chosen[order], "landed")
+    elif tolerance is not None:
+        what = f"landed: landing error at most {tolerance:g} rad"
+        colors, key = _of_two(within(runs, tolerance).values[order], what)
+    else:
+        colors, key = _by_ending(runs[ENDED], order, simulation)
+    ends = _ends(plan, simulation, numbers[order])
+    words = _captions(ends, numbers[order], None if errors is None else errors[order])
     if lost.any():
         key.append((GREY, f"{int(lost.sum())} failed and are not drawn"))
     if columns is not None and len(order) == len(numbers) and not options.get("superimposed"):
         options = {"columns": columns, **options}
         key.append(("", _axes(data, plan)))
-    landings_picture(poses, path, colors, words, key, **options)
+    landings_picture(_poses(ends), path, colors, words, key, **options)
+
+
+def _of_two(landed: Array, what: str) -> tuple[list[str], Key]:
+    """Colours of bodies that landed or did not, and what the colours mean."""
+    colors = [BLUE if one else VERMILION for one in landed]
+    key = [(BLUE, f"{int(landed.sum())} of {len(landed)} {what}")]
+    if not landed.all():
+        key.append((VERMILION, f"{int((~landed).sum())} did not land"))
+    return colors, key
+
+
+def _by_ending(ended: xr.DataArray, order: Array, simulation: Shown) -> tuple[list[str], Key]:
+    """Colours of bodies by how their runs ended, and what the colours mean."""
+    codes = ended.values[order]
+    known = np.unique(codes).tolist()
+    color = dict(zip(known, LINES, strict=False))
+    key = []
+    for code in known:
+        count = f"{int((codes == code).sum())}" + (f" of {len(codes)}" if not key else "")
+        said = simulation.ending_in_words(ending_words(ended)[code])
+        key.append((color[code], f"{count} {said}"))
+    return [color[code] for code in codes.tolist()], key
+
+
+def _captions(ends: list[History], numbers: Array, errors: Array | None) -> list[str]:
+    """What stands below each body: its landing error, or when its run ended, or which it is."""
+    if errors is not None:
+        return [f"{error:.2g} rad" for error in errors]
+    times = np.array([history.times[-1] for history in ends])
+    if np.ptp(times) > _SAME * times.max():
+        return [f"{time:.3g} s" for time in times]
+    return [f"no. {number:,}" for number in numbers]
 
 
 def _require_plan(data: xr.Dataset, plan: Plan | None) -> Plan:
@@ -139,13 +172,18 @@ def _picked(data: xr.Dataset, dims: dict[str, int], numbers: Array) -> xr.Datase
     return picked
 
 
-def _poses(plan: Plan, simulation: Shown, numbers: Array) -> Recording:
-    """Where bodies are at the ends of some runs, one after the other, about their own places."""
+def _ends(plan: Plan, simulation: Shown, numbers: Array) -> list[History]:
+    """Histories of some runs, to their ends."""
     ends = []
     for number in numbers.tolist():
         given = plan.varied(number, number + 1)
         values = moved(plan.simulation.values, plan.vary, plan.targets, given)
         ends.append(simulation.history(values))
+    return ends
+
+
+def _poses(ends: list[History]) -> Recording:
+    """Where bodies are at the ends of their runs, one after the other, about their own places."""
     rows = {
         name: np.array([getattr(history, name)[-1] for history in ends])
         for name in ("base_position", "base_quaternion", "joint_coordinates", "angles")

@@ -265,7 +265,7 @@ class Ensemble:
         most: int = 100,
         **options: Any,
     ) -> None:
-        """Write one picture of how flights landed: a body for each, coloured by whether it landed.
+        """Write one picture of how flights landed: a body for each, coloured by what became of it.
 
         The flights that are drawn are flown once more. A map over two grids is drawn as a map, the
         second grid from left to right; others go by their landing error, if they have one.
@@ -278,7 +278,7 @@ class Ensemble:
             Of each flight whether it landed, as for `fraction`.
         tolerance : float, optional
             Those landed whose landing error is at most so much, rad. Without it and without `good`
-            all that did not fail.
+            colours say how flights ended.
         plan : Plan, optional
             What was flown, for an ensemble that was opened from a file, as
             `ensembles.read_ensemble(SPEC).plan` gives it.

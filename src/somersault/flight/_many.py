@@ -205,6 +205,23 @@ class Flights:
         begun, times = self.batch.begun(values), np.array([0.0, self.batch.duration])
         return flown(self.batch, times, np.zeros(3), self.accuracy, self.steps, begun)
 
+    def ending_in_words(self, ending: str) -> str:
+        """What flights did that ended so.
+
+        Parameters
+        ----------
+        ending : str
+            One of `ENDINGS`.
+
+        Returns
+        -------
+        str
+            Such as "flew for 2 s".
+        """
+        if ending == "duration":
+            return f"flew for {self.batch.duration:.4g} s"
+        return f"ended at a {self.batch.until}" if ending == "event" else ending
+
 
 def flights(
     model: str | Model,

@@ -1,7 +1,9 @@
 """COLLADA (.dae), by pycollada: the surfaces of its scene, each with the colour of its material.
 
 Lengths are in the unit that the file names. Which axis it says is up does not matter, as it does
-not to ROS: a mesh stands in the axes in which its numbers are.
+not to RViz, Gazebo and pinocchio, for which robots' files are written: a mesh stands in the axes in
+which its numbers are. MeshLab writes Y_UP whatever these are, so heeding it would turn more robots
+wrong (Go1, Borinot) than right.
 """
 
 from __future__ import annotations
