@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 import time
+import warnings
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -64,6 +65,47 @@ def test_any_name_can_be_written(flight):
     for name in ("x" * 1_000_000, "two\nlines\x00", "", "</script>", "体操 🤸"):
         seen = frame(flight, 0.1, size=SIZE, labels=[name])
         assert np.array_equal(seen[80:], plain[80:])
+
+
+def test_a_long_label_is_broken_and_charts_keep_their_room(flight):
+    short = frame([flight, flight], 0.1, size=(640, 360), labels=["one", "two"], charts=True)
+    names = ["a name of many words " * 9, "$\\frac{$ is not mathematics"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # matplotlib's, where charts find no room
+        long = frame([flight, flight], 0.1, size=(640, 360), labels=names, charts=True)
+    # The last chart stands as it did: nothing is squeezed out at the left or the right.
+    assert np.array_equal(long[340:, 404:], short[340:, 404:])
+    first = slice(0, 201)  # the left panel: more lines, the last of them cut with "…"
+    assert (long[20:60, first] != short[20:60, first]).any()
+    assert np.array_equal(long[120:, first], short[120:, first])
+
+
+def test_an_arrow_is_told_as_long_as_it_is_at_the_moment(monkeypatch):
+    said = []
+    monkeypatch.setattr(
+        "somersault.view._scene.write_on", lambda p, at, words, *_: said.append(words)
+    )
+    takeoff = so.Takeoff(spin=8.6, tilt=0.3)
+    flight = so.fly("book", takeoff, 1.0, samples=2001)
+    flight.frame(0.7, size=SIZE, vectors=["spin"])
+    omega = np.linalg.norm(flight.angular_velocity[1400])
+    assert said[-1] == f"angular velocity {omega:.3g} rad/s"
+    assert f"{omega:.3g}" != f"{np.linalg.norm(flight.angular_velocity[0]):.3g}"
+
+
+@pytest.mark.parametrize("time", [-0.1, 0.6])
+def test_there_is_nothing_to_be_seen_before_the_beginning_and_after_the_end(flight, tmp_path, time):
+    for draw in (
+        lambda: flight.frame(time, size=SIZE),
+        lambda: flight.picture(tmp_path / "a.png", [0.0, time], size=SIZE),
+        lambda: stroboscopic_picture(flight, tmp_path / "a.png", [0.0, time], size=SIZE),
+    ):
+        with pytest.raises(so.SomersaultError, match=f"{time} s .* from 0 to 0.5 s"):
+            draw()
+    # Beside one that flies on it stays as it landed.
+    longer = so.fly("furrer", so.Takeoff(spin=8.6), 0.7)
+    frame([flight, longer], 0.6, size=SIZE)
+    flight.frame(0.1 + 0.2 + 0.2 + 1e-12, size=SIZE)
 
 
 def test_films_repeat(flight, tmp_path):

@@ -45,7 +45,7 @@ def plot(data: xr.Dataset, name: str | None = None) -> Figure:
 def _named(values: xr.DataArray) -> str:
     unit = values.attrs.get("units", "")
     plain = str(values.name).replace("_", " ")
-    return f"{plain} ({unit})" if unit not in ("", "1") else plain
+    return look.literal(f"{plain} ({unit})" if unit not in ("", "1") else plain)
 
 
 def _map(picture: Any, ax: Any, data: xr.Dataset, values: xr.DataArray, grids: list[str]) -> None:

@@ -13,6 +13,7 @@ from somersault._core.numbers import numbers
 from somersault.attitude import matrix_from_quaternion
 from somersault.view import _figure as parts
 from somersault.view import style as look
+from somersault.view._lettering import tidy
 from somersault.view._look import several
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ def contact_sheet(
         shown = times[row * columns : (row + 1) * columns]
         strip(ax, history, shown, columns, (azimuth, elevation), size=size)
     if text("title", title):
-        made.suptitle(title, fontsize=10)
+        made.suptitle(look.literal(title), fontsize=10)
     return made
 
 
@@ -126,11 +127,12 @@ def strip(
 
 def _words(history: History, k: int) -> str:
     """The time and, of what is free in the air, the turns."""
-    time = f"{history.times[k]:.2f} s"
+    time = f"{tidy(history.times[k])} s"
     if not history.model.free:
         return time
     somersault, _, twist = history.angles[k]
-    return f"{time}\n{somersault / (2 * np.pi):.2f} turns\ntwist {np.degrees(twist):.0f}°"
+    turns, degrees = tidy(somersault / (2 * np.pi)), tidy(np.degrees(twist), 0)
+    return f"{time}\n{turns} turns\ntwist {degrees}°"
 
 
 def _nearest(history: History, moment: float) -> int:

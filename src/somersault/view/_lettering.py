@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,39 @@ def write_on(
     room = picture[y : y + mask.shape[0], x : x + mask.shape[1], :3]
     share = mask[: room.shape[0], : room.shape[1], None]
     room[:] = (room + share * (np.array(rgb(color)) * 255 - room) + 0.5).astype(np.uint8)
+
+
+@lru_cache(256)
+def lines_of(words: str, size: float, width: float, most: int) -> tuple[str, ...]:
+    """Words broken into lines of at most so many pixels, the last cut short with "…" where there
+    are more than `most`."""
+    lines = [""]
+    for word in words[: _MOST_LETTERS * most].split():
+        longer = f"{lines[-1]} {word}".strip()
+        if not lines[-1] or _width(longer, size) <= width:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    kept = lines[:most]
+    if len(lines) > most:
+        kept[-1] += "…"
+    return tuple(_shortened(line, size, width) for line in kept)
+
+
+def tidy(value: float, places: int = 2) -> str:
+    """A number of so many places, with a real minus, and none before a zero."""
+    return f"{round(value, places) + 0.0:.{places}f}".replace("-", "−")
+
+
+def _shortened(words: str, size: float, width: float) -> str:
+    while len(words) > 1 and _width(words, size) > width:
+        words = f"{words.rstrip('…')[:-1].rstrip()}…"
+    return words
+
+
+def _width(words: str, size: float) -> float:
+    """Of a line, in pixels."""
+    return float(_font(max(8, round(size))).getlength(words))
 
 
 def _mask(words: str, size: int) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError
 from somersault.view.charts import filled, locus, stroboscopic
-from somersault.view.style import BLUE, GREEN, figure, label, style
+from somersault.view.style import BLUE, GREEN, figure, label, literal, style
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -45,7 +45,8 @@ def stability_chart(chart: xr.Dataset) -> Figure:
         axes.set(xlabel=_axis(chart, x_name), ylabel=_axis(chart, y_name))
         axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
         whole = "" if chart.attrs["subsystem"] == "all" else f", part of {chart.attrs['subsystem']}"
-        axes.set_title(f"Spins of {chart.attrs['model']} about axis {chart.attrs['axis']}{whole}")
+        title = f"Spins of {chart.attrs['model']} about axis {chart.attrs['axis']}{whole}"
+        axes.set_title(literal(title))
         _region(axes, x, y, chart.stable.values, BLUE, "stable", "nowhere stable")
         if "definite" in chart:
             survives, does_not = (
@@ -100,14 +101,15 @@ def root_loci(loci: xr.Dataset) -> Figure:
         dots = locus(axes, values, roots)
         stroboscopic(axes)
         picture.colorbar(dots, label=_axis(loci, name), shrink=0.7)
-        axes.set_title(f"Roots of {loci.attrs['model']} about axis {loci.attrs['axis']}")
+        title = f"Roots of {loci.attrs['model']} about axis {loci.attrs['axis']}"
+        axes.set_title(literal(title))
         picture.draw_without_rendering()
     return picture
 
 
 def _axis(data: xr.Dataset, name: str) -> str:
     kind, _, rest = name.partition(".")
-    return f"{kind} of {rest.replace('_', ' ')} ({data[name].attrs['units']})"
+    return literal(f"{kind} of {rest.replace('_', ' ')} ({data[name].attrs['units']})")
 
 
 def _require(made_by: str, data: Any, variable: str) -> None:

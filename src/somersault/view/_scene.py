@@ -12,7 +12,7 @@ from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.view._actor import Actor, values_at
 from somersault.view._canvas import blank
-from somersault.view._lettering import FAINT, INK, write_on
+from somersault.view._lettering import FAINT, INK, lines_of, tidy, write_on
 from somersault.view._look import Look
 from somersault.view._stage import VECTORS, Stage
 from somersault.view._timeline import Timeline
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 _CHARTS = 0.37  # of the width
 _WORDS = 0.028  # of the height: the size of letters
+_LABEL_LINES = 3
 _NAMES = {"momentum": ("angular momentum", "kg m²/s"), "spin": ("angular velocity", "rad/s")}
 
 
@@ -95,39 +96,31 @@ class Scene:
         size = max(9.0, min(_WORDS * height, 0.045 * width))
         margin, step = 0.8 * size, 1.5 * size
         y = margin
-        if self._labels[index]:
-            write_on(panel, (margin, y), self._labels[index], 1.05 * size)
+        label = self._labels[index]
+        for line in lines_of(label, 1.05 * size, width - 2 * margin, _LABEL_LINES) if label else ():
+            write_on(panel, (margin, y), line, 1.05 * size)
             y += step
         for line in self._lines(index, k):
-            write_on(panel, (margin, y), line, size, FAINT if self._labels[index] else INK)
+            write_on(panel, (margin, y), line, size, FAINT if label else INK)
             y += step
         y = height - margin - step * len(self._look.vectors)
         for name in self._look.vectors:
-            write_on(panel, (margin, y), self._said(index, name), 0.9 * size, VECTORS[name])
+            write_on(panel, (margin, y), self._said(index, name, k), 0.9 * size, VECTORS[name])
             y += step
 
     def _lines(self, index: int, k: int) -> list[str]:
         times = self._histories[index].times
         moment = np.clip(self._moments[k], times[0], times[-1])  # it waits for the others
-        time = f"{_tidy(moment)} s{self._note}"
+        time = f"{tidy(moment)} s{self._note}"
         if not self._histories[index].model.free:
             return [time]
         somersault, _, twist = self._angles[index][k] / (2 * np.pi)
-        return [time, f"somersault {_tidy(somersault)} turns", f"twist {_tidy(twist)} turns"]
+        return [time, f"somersault {tidy(somersault)} turns", f"twist {tidy(twist)} turns"]
 
-    def _said(self, index: int, name: str) -> str:
-        """What an arrow is, and how long."""
+    def _said(self, index: int, name: str, k: int) -> str:
+        """What an arrow is, and how long at a moment."""
         actor = self._stages[index].actors[0]
         words, unit = _NAMES[name]
         if not actor.longest[name]:
             return f"no {words}"
-        values = np.linalg.norm(actor.vectors[name], axis=1)
-        most, least = float(values.max()), float(values.min())
-        if most - least < 0.05 * most:
-            return f"{words} {np.median(values):.3g} {unit}"
-        return f"{words} {least:.3g} to {most:.3g} {unit}"
-
-
-def _tidy(value: float) -> str:
-    """Two places, and no minus before a zero."""
-    return f"{round(value, 2) + 0.0:.2f}".replace("-", "−")
+        return f"{words} {np.linalg.norm(actor.vectors[name][k]):.3g} {unit}"

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 _CELL = (240, 320)
 MOST_POSES = 240
 MOST_PIXELS = 60_000_000
+_SLACK = 1e-9  # of the whole time: what is reckoned up of steps ends there
 _STILL = 0.25  # of its size: a centre of mass that travels less stays in place
 
 
@@ -39,7 +40,7 @@ def frame(histories: History | Sequence[History], time: float, **look: Any) -> A
     histories : History or sequence of History
         One, or several side by side.
     time : float
-        s; before the first sample and after the last it is as it is there.
+        s, from the first sample to the last; of several, those that have ended stay as they are.
     **look
         size, camera, follow, vectors, charts, ghosts, labels, ground: see `Look`.
 
@@ -47,6 +48,11 @@ def frame(histories: History | Sequence[History], time: float, **look: Any) -> A
     -------
     ndarray, (height, width, 3)
         Red, green and blue, bytes.
+
+    Raises
+    ------
+    SomersaultError
+        For a time before the beginning or after the end, and options that make no sense.
 
     Examples
     --------
@@ -57,7 +63,7 @@ def frame(histories: History | Sequence[History], time: float, **look: Any) -> A
     (180, 320, 3)
     """
     shown = several("histories", histories, 1)
-    scene, (place,) = _of_the_film(shown, np.array([number("time", time)]), look_of(look))
+    scene, (place,) = _of_the_film(shown, _within(shown, [number("time", time)]), look_of(look))
     return scene.frame(place)[..., :3].copy()
 
 
@@ -86,7 +92,8 @@ def picture(
     Raises
     ------
     SomersaultError
-        For options that make no sense, and a file of another kind.
+        For a time before the beginning or after the end, options that make no sense, and a file of
+        another kind.
 
     Examples
     --------
@@ -98,7 +105,11 @@ def picture(
     file = check_file(path, (".png",))
     shown = several("histories", histories, 1)
     one = times is not None and not np.shape(times)
-    moments = _spread(shown, 12) if times is None else numbers("times", np.atleast_1d(times))
+    moments = (
+        _spread(shown, 12)
+        if times is None
+        else _within(shown, numbers("times", np.atleast_1d(times)))
+    )
     columns = min(whole_number("columns", columns, 1, MOST_POSES), max(1, len(moments)))
     if not 0 < len(moments) <= MOST_POSES:
         raise SomersaultError(f"give 1 to {MOST_POSES} times, not {len(moments)}")
@@ -148,7 +159,8 @@ def stroboscopic_picture(
     Raises
     ------
     SomersaultError
-        For what stays in place, options that make no sense, and a file of another kind.
+        For what stays in place, a time before the beginning or after the end, options that make no
+        sense, and a file of another kind.
 
     Examples
     --------
@@ -164,7 +176,7 @@ def stroboscopic_picture(
     if not np.shape(times):
         moments = _spread(shown, whole_number("times", times, 1, MOST_POSES))
     else:
-        moments = numbers("times", times)
+        moments = _within(shown, numbers("times", times))
     if not 0 < len(moments) * len(shown) <= MOST_POSES:
         raise SomersaultError(f"give 1 to {MOST_POSES} poses, not {len(moments) * len(shown)}")
     actors = [Actor(history, moments) for history in shown]
@@ -200,10 +212,27 @@ def png(image: Array) -> bytes:
     return held.getvalue()
 
 
+def _ends(histories: Sequence[History]) -> tuple[float, float]:
+    """The first time of any, and the last."""
+    first = min(float(history.times[0]) for history in histories)
+    return first, max(float(history.times[-1]) for history in histories)
+
+
+def _within(histories: Sequence[History], moments: Array | Sequence[float]) -> Array:
+    """The moments; SomersaultError for one at which there is nothing to be seen."""
+    first, last = _ends(histories)
+    slack = _SLACK * (last - first)
+    for moment in moments:
+        if not first - slack <= moment <= last + slack:
+            raise SomersaultError(
+                f"{moment:.9g} s is outside the motion; give a time from {first:g} to {last:g} s"
+            )
+    return np.clip(moments, first, last)
+
+
 def _spread(histories: Sequence[History], count: int) -> Array:
     """Moments from the first sample to the last."""
-    first = min(float(history.times[0]) for history in histories)
-    last = max(float(history.times[-1]) for history in histories)
+    first, last = _ends(histories)
     return np.linspace(first, last, count if last > first else 1)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault.history import History
 from somersault.view import style as look
+from somersault.view._lettering import lines_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 _MOST_LABELS = 6
 _STILL = 5e-3  # rad or m: joints that move less are left out
+_NAMES_SIZE = 8  # points
+_NAMES_SHARE = 0.68  # of the width, for the words in a line above the charts
 _DOTS = 100  # an inch, where the picture is 720 pixels high
 
 
@@ -50,7 +53,7 @@ class Timeline:
             )
             axes = _drawn(figure, histories)
             if len(histories) > 1:
-                _name_lines(axes[0], labels)
+                _name_lines(axes[0], labels, width, dots)
             canvas = FigureCanvasAgg(figure)
             canvas.draw()
             self.picture: Array = np.array(canvas.buffer_rgba())
@@ -99,7 +102,7 @@ def _drawn(figure: Figure, histories: Sequence[History]) -> list[Axes]:
             for other in histories[:0:-1]:
                 if name in _known(other):
                     ax.plot(other.times, _values(other, name), "--", color=color, lw=1, alpha=0.7)
-            ax.plot(times, _values(first, name), color=color, lw=1.6, label=name.replace("_", " "))
+            ax.plot(times, _values(first, name), color=color, lw=1.6, label=_worded(name))
         if 1 < len(lines) <= _MOST_LABELS:
             ax.legend(frameon=False, fontsize=7, loc="best", handlelength=1.2, labelspacing=0.2)
         ax.set_ylabel(words, fontsize=9)
@@ -114,8 +117,9 @@ def _drawn(figure: Figure, histories: Sequence[History]) -> list[Axes]:
     return axes
 
 
-def _name_lines(ax: Axes, labels: Sequence[str]) -> None:
-    """Say above the first chart whose lines are drawn through, and whose are dashed."""
+def _name_lines(ax: Axes, labels: Sequence[str], width: int, dots: float) -> None:
+    """Say above the first chart whose lines are drawn through, and whose are dashed: beside one
+    another where there is room, else one below the other."""
     from matplotlib.lines import Line2D
 
     first, *others = labels
@@ -124,10 +128,28 @@ def _name_lines(ax: Axes, labels: Sequence[str]) -> None:
         Line2D([], [], color=look.GREY, lw=1, ls="--"),
     ]
     names = [first, others[0] if len(set(others)) == 1 else "the others"]
+    half = [
+        lines_of(name, _points(_NAMES_SIZE, dots), _NAMES_SHARE * width / 2, 1) for name in names
+    ]
+    beside = [line for (line,) in half] == names
+    lines = [
+        "\n".join(lines_of(name, _points(_NAMES_SIZE, dots), _NAMES_SHARE * width, 2))
+        for name in names
+    ]
+    said = [look.literal(name) for name in (names if beside else lines)]
     ax.legend(
-        kinds, names, frameon=False, fontsize=8, ncols=2, loc="lower left",
-        bbox_to_anchor=(0, 1), borderaxespad=0.1, handlelength=2,
+        kinds, said, frameon=False, fontsize=_NAMES_SIZE, ncols=2 if beside else 1,
+        loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0.1, handlelength=2,
     )  # fmt: skip
+
+
+def _points(size: float, dots: float) -> float:
+    """Letters of so many points, in pixels."""
+    return size * dots / 72
+
+
+def _worded(name: str) -> str:
+    return look.literal(name.replace("_", " "))
 
 
 def _moving(histories: Sequence[History]) -> list[str]:

@@ -83,7 +83,7 @@ def sphere_map(
     globe(ball, inertias, levels, view)
     tilt_twist(chart, inertias, levels)
     if title:
-        made.suptitle(title, fontsize=10.5)
+        made.suptitle(look.literal(title), fontsize=10.5)
     return made
 
 

@@ -111,6 +111,11 @@ def saved(made: Figure, ending: str) -> bytes:
     return held.getvalue()
 
 
+def literal(words: str) -> str:
+    """Words from outside for a picture, in which a dollar sign begins no mathematics."""
+    return words.replace("$", r"\$")
+
+
 def label(ax: Axes, x: float, y: float, text: str, color: str = BLACK, **options: Any) -> Any:
     """Words beside what they name, with a white edge so that lines do not cross them out."""
     from matplotlib.patheffects import withStroke
