@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import looks
 import numpy as np
 
 from somersault.attitude import quaternion_from_matrix
@@ -47,15 +48,12 @@ lower. Written by scripts/gymnast.py; change it there.
             degrees: shoulder abduction -45 to 190; shoulder rotation -72 to 72 from the 30 inward;
             elbow 0 to 150; hip flexion to 160, 40 of them the lumbar spine's, which has no joint.
 
-SI units and radians. Geoms are pictures without mass; their radii are not data.
+SI units and radians. Geoms are pictures without mass; their sizes are not data.
 -->
 <mujoco model="gymnast">
   <compiler angle="radian" inertiafromgeom="false"/>
   <option gravity="0 0 0"/>
-  <default>
-    <geom type="capsule" mass="0" contype="0" conaffinity="0" rgba="0.30 0.45 0.65 1"/>
-  </default>
-  <worldbody>
+{looks}  <worldbody>
 """
 
 
@@ -66,36 +64,25 @@ def numbers(values: object) -> str:
 
 
 def geoms(name: str) -> list[str]:
-    """Capsules along the segments of a body, from height to height over its frame."""
+    """What a body looks like: its segments, seen from its frame."""
     kind = name.removeprefix("left_").removeprefix("right_")
+    side = name[: -len(kind)]
     size = HEIGHT / MALE.height
     long = {row: size * segment.length for row, segment in MALE.segments.items()}
-    heel = HEIGHT / MALE.height * HEEL_BEHIND_ANKLE
     waist = long["lower_trunk"] + long["middle_trunk"]
     ankle = -long["thigh"] - long["shank"]
-    shapes = {
-        "pelvis": [("pelvis", 0.02, waist - 0.1, 0.13)],
-        "torso": [
-            ("torso", 0.0, long["upper_trunk"] - 0.1, 0.13),
-            ("head", long["upper_trunk"] + 0.08, long["upper_trunk"] + long["head"] - 0.08, 0.08),
-        ],
-        "upper_arm": [("upper_arm", 0.0, -long["upper_arm"], 0.042)],
-        "forearm": [
-            ("forearm", 0.0, -long["forearm"], 0.034),
-            ("hand", -long["forearm"], 0.024 - long["forearm"] - long["hand"], 0.024),
-        ],
-        "leg": [
-            ("thigh", 0.0, -long["thigh"], 0.068),
-            ("shank", -long["thigh"], ankle, 0.046),
-            ("foot", ankle + heel, 0.03 + ankle + heel - long["foot"], 0.03),
-        ],
+    upper = long["upper_trunk"]
+    if kind == "pelvis":
+        return looks.hips(size)
+    if kind == "torso":
+        chest = looks.chest(size * MALE.shoulder_height - waist, upper + 0.06 * size, size)
+        return [*chest, looks.head(long["head"], upper, size)]
+    tops = {
+        "upper_arm": {"upper_arm": 0.0},
+        "forearm": {"forearm": 0.0, "hand": -long["forearm"]},
+        "leg": {"thigh": 0.0, "shank": -long["thigh"], "foot": ankle + size * HEEL_BEHIND_ANKLE},
     }
-    side = name[: -len(kind)]
-    return [
-        f'<geom name="{side}{shape}" fromto="0 0 {numbers(top)} 0 0 {numbers(bottom)}"'
-        f' size="{radius:g}"/>'
-        for shape, top, bottom, radius in shapes[kind]
-    ]
+    return [looks.limb(side + row, long[row], top) for row, top in tops[kind].items()]
 
 
 def joint(hinge: Joint) -> str:
@@ -128,7 +115,13 @@ def body(model: Model, index: int) -> list[str]:
 def mjcf() -> str:
     """The whole file."""
     return (
-        HEADER.format(height=HEIGHT, mass=MASS, index=MASS / HEIGHT**2, standard=MALE.height)
+        HEADER.format(
+            height=HEIGHT,
+            mass=MASS,
+            index=MASS / HEIGHT**2,
+            standard=MALE.height,
+            looks=looks.DEFAULTS,
+        )
         + "".join(f"    {line}\n" for line in body(athlete(HEIGHT, MASS), 0))
         + "  </worldbody>\n</mujoco>\n"
     )

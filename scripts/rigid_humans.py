@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+import looks
 import numpy as np
 
 from somersault.model.athlete._de_leva import (
@@ -21,18 +22,8 @@ from somersault.model.athlete._de_leva import (
 
 SHIPPED = Path(__file__).parents[1] / "src" / "somersault" / "model" / "shipped"
 SHOULDER_HEIGHT = MALE.shoulder_height
-# Of the capsules that picture the segments, m; chosen.
-RADII = {
-    "head": 0.085,
-    "trunk": 0.14,
-    "upper_arm": 0.042,
-    "forearm": 0.034,
-    "hand": 0.024,
-    "thigh": 0.070,
-    "shank": 0.048,
-    "foot": 0.032,
-}
-TABLE = {name: MALE.segments[name] for name in RADII}
+SEGMENTS = ("head", "trunk", "upper_arm", "forearm", "hand", "thigh", "shank", "foot")
+TABLE = {name: MALE.segments[name] for name in SEGMENTS}
 
 FRONT, LEFT, HEAD = np.eye(3)
 
@@ -132,26 +123,28 @@ def body(
 ) -> list[str]:
     """Lines of one segment that runs down its own axis 3 from `start` above its frame."""
     kind = name.removeprefix("left_").removeprefix("right_")
-    segment, radius = TABLE[kind], RADII[kind]
+    segment = TABLE[kind]
     mass = MALE.mass * segment.mass / 100
     inertia = segment.inertia(mass, segment.length)
     centre = start - segment.com / 100 * segment.length
-    top, bottom = start - radius / 2, start - segment.length + radius / 2
     inertial = (
         f'  <inertial pos="0 0 {numbers([centre])}" mass="{numbers([mass])}"'
         f' diaginertia="{numbers(inertia)}"/>'
     )
-    geom = (
-        f'  <geom name="{name}" fromto="0 0 {numbers([top])} 0 0 {numbers([bottom])}"'
-        f' size="{numbers([radius])}"/>'
-    )
     return [
         f'<body name="{name}" pos="{numbers(position)}" quat="{numbers(quaternion(rotation))}">',
         inertial,
-        geom,
+        *("  " + line for line in seen(name, segment.length, start)),
         *("  " + line for line in children),
         "</body>",
     ]
+
+
+def seen(name: str, length: float, start: float) -> list[str]:
+    """What a segment looks like."""
+    if name == "trunk":
+        return [*looks.hips(), *looks.chest(SHOULDER_HEIGHT, length + 0.06)]
+    return [looks.head(length, 0.0) if name == "head" else looks.limb(name, length, start)]
 
 
 def limbs(pose: Pose, side: str) -> list[str]:
@@ -198,7 +191,7 @@ def mjcf(pose: Pose) -> str:
     lines = body("trunk", np.zeros(3), np.eye(3), parts, start=trunk.length)
     lines[:1] = ['<body name="trunk">', "  <freejoint/>"]
     return (
-        HEADER.format(name=pose.name, about=pose.about)
+        HEADER.format(name=pose.name, about=pose.about, looks=looks.DEFAULTS)
         + "".join(f"    {line}\n" for line in lines)
         + "  </worldbody>\n</mujoco>\n"
     )
@@ -222,15 +215,12 @@ Not in that table: shoulder half-width 0.18 (Furrer, Playter's Table 4.1); hip h
 ankle 0.06 before the heel (assumed; 0.02 more or less changes no inertia by 1.1 %).
 
 The trunk's frame is the root: origin midway between the hips, axes 1 front, 2 left, 3 head.
-SI units. Geoms are pictures without mass; their radii are not data.
+SI units. Geoms are pictures without mass; their sizes are not data.
 -->
 <mujoco model="human_{name}">
   <compiler angle="radian" inertiafromgeom="false"/>
   <option gravity="0 0 0"/>
-  <default>
-    <geom type="capsule" mass="0" contype="0" conaffinity="0" rgba="0.30 0.45 0.65 1"/>
-  </default>
-  <worldbody>
+{looks}  <worldbody>
 """
 
 

@@ -18,6 +18,8 @@ def program(name: str) -> ModuleType:
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
+    if str(SCRIPTS) not in sys.path:  # as when they are run
+        sys.path.append(str(SCRIPTS))
     sys.modules[spec.name] = module
     spec.loader.exec_module(module)
     return module

@@ -284,13 +284,13 @@ def measured(_: Path) -> Model:
 @pytest.mark.parametrize(
     ("make", "counts"),
     [
-        (copied, [1, 2, 1, 2, 1, 2, 3, 3]),
-        (lambda _: so.athlete(1.7, 65.0), [1, 2, 1, 2, 1, 2, 3, 3]),
+        (copied, [2, 4, 1, 2, 1, 2, 3, 3]),
+        (lambda _: so.athlete(1.7, 65.0), [1, 3, 1, 2, 1, 2, 3, 3]),
         (lambda _: so.athlete(1.6, 50.0, "female", shoulders="ball", knees=True), None),
-        (measured, [2, 1, 1, 1, 1, 1, 2, 2]),  # pelvis and thorax; thigh, and shank with foot
+        (measured, [2, 2, 1, 1, 1, 1, 3, 3]),  # what is clothed, and what is bare
         (with_a_spring, [4, 1, 1]),
         (lambda _: so.load("doll").renamed("mine"), [4, 1, 1]),
-        (lambda _: so.load("furrer", axes=(3, 2, 1)), [4, 1, 1]),
+        (lambda _: so.load("furrer", axes=(3, 2, 1)), [5, 1, 1]),
         (hung, [5, 1, 1]),
     ],
 )

@@ -6,7 +6,7 @@ import contextlib
 import io
 import os
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from typing import Any, Literal
 
@@ -18,13 +18,14 @@ from somersault._core.errors import SomersaultError
 from somersault._core.notes import note
 from somersault.model._model import Model
 from somersault.model.athlete._athlete import Part, Physique, Shoulders, athlete_model, joined
-from somersault.model.athlete._figure import BALL, solid, stadium
+from somersault.model.athlete._figure import BALL, CLOTH, SKIN, solid, stadium
 from somersault.model.athlete._measurements import read_measurements
-from somersault.model.shapes import Mesh
+from somersault.model.shapes import Color, Mesh
 
 Densities = Literal["Chandler", "Clauser", "Dempster"]
 
 # yeadon's axes are 1 left, 2 back, 3 head.
+_TO_THE_NECK, _TO_THE_ANKLE = 2, 2  # solids of its chest and head, and of its shank and foot
 _AXES = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 
 
@@ -133,18 +134,20 @@ def _physique(human: Any, scale: float) -> Physique:
     def place(segment: Any) -> Array:
         return _AXES @ segment.pos[:, 0]
 
-    def part(segment: Any) -> Part:
+    def part(segment: Any, clothed: int) -> Part:
         com, inertia = segment.rel_center_of_mass[:, 0], segment.rel_inertia
-        return Part(scale * segment.mass, com, scale * inertia, (_solid(segment),)).turned(_AXES)
+        return Part(scale * segment.mass, com, scale * inertia, _solids(segment, clothed)).turned(
+            _AXES
+        )
 
     pelvis, thorax, chest = human.P, human.T, human.C
     return Physique(
-        lower=joined(part(pelvis), part(thorax).moved(place(thorax))),
-        upper=part(chest),
-        upper_arm=part(human.A1),
-        forearm=part(human.A2),
-        thigh=part(human.J1),
-        shank=part(human.J2),
+        lower=joined(part(pelvis, 2), part(thorax, 1).moved(place(thorax))),
+        upper=part(chest, _TO_THE_NECK),
+        upper_arm=part(human.A1, 0),
+        forearm=part(human.A2, 0),
+        thigh=part(human.J1, 3),
+        shank=part(human.J2, _TO_THE_ANKLE),
         twist=float(place(chest)[2]),
         shoulder=place(human.A1) - place(chest),
         hip=place(human.J1),
@@ -153,19 +156,26 @@ def _physique(human: Any, scale: float) -> Physique:
     )
 
 
-def _solid(segment: Any) -> Mesh:
-    """Through all the cross-sections of a segment, in its own axes, rounded at a joint's ball."""
+def _solids(segment: Any, clothed: int) -> tuple[Mesh, ...]:
+    """Through all the cross-sections of a segment, in its own axes: so many of its solids, from the
+    inner joint on, in clothes, and the rest bare."""
+    groups = ((segment.solids[:clothed], CLOTH), (segment.solids[clothed:], SKIN))
+    return tuple(_solid(segment, solids, color) for solids, color in groups if solids)
+
+
+def _solid(segment: Any, solids: Sequence[Any], color: Color) -> Mesh:
+    """Through the cross-sections of some of its solids, rounded at a joint's ball."""
     rings: list[Array] = []
     radius = 0.0
-    for part in sorted(segment.solids, key=lambda part: part.pos[2, 0]):
+    for part in sorted(solids, key=lambda part: part.pos[2, 0]):
         low = float(part.pos[2, 0] - segment.pos[2, 0])
         if not hasattr(part, "stads"):  # the top of the head
-            return solid(rings, above=part.height)
+            return solid(rings, color, above=part.height)
         for level, section in zip((low, low + part.height), part.stads, strict=True):
             along = 0 if section.alignment == "ML" else 1  # yeadon's axis 1 is the left
             ring = stadium(section.radius, section.thickness, level, along)
             radius = section.radius
             if not rings or not np.allclose(ring, rings[-1]):
                 rings.append(ring)
-    limb = segment.label[0] in "AJK"
-    return solid(rings, above=BALL * radius if limb else 0.0)
+    jointed = segment.label[0] in "AJK" and solids[0] is segment.solids[0]
+    return solid(rings, color, above=BALL * radius if jointed else 0.0)

@@ -20,7 +20,17 @@ from somersault.model.athlete._de_leva import (
     TABLES,
     Table,
 )
-from somersault.model.athlete._figure import ellipse, head, solid, tapered, trunk_half_axes
+from somersault.model.athlete._figure import (
+    CLOTH,
+    SKIN,
+    ellipse,
+    far_end,
+    foot,
+    head,
+    solid,
+    tapered,
+    trunk_half_axes,
+)
 
 
 def athlete(
@@ -100,7 +110,8 @@ def _physique(table: Table, height: float, mass: float) -> Physique:
         com = (top - row[kind].com / 100 * length(kind)) * HEAD
         inertia = np.diag(row[kind].inertia(heavy, length(kind)))
         limb = kind not in single
-        shapes = (tapered(row[kind], heavy, length(kind), top),) if limb else ()
+        color = CLOTH if kind in ("thigh", "shank") else SKIN
+        shapes = (tapered(row[kind], heavy, length(kind), top, color),) if limb else ()
         return Part(heavy, com, inertia, shapes)
 
     def half_axes(kind: str) -> Array:
@@ -117,24 +128,37 @@ def _physique(table: Table, height: float, mass: float) -> Physique:
         ellipse(waist, lower + 0.5 * middle),
         ellipse(ribs, lower + middle),
     ]
+    collar = 0.5 * throat + 0.5 * 0.9 * chest
     torso = [
         ellipse(ribs, 0.0),
         ellipse(chest, 0.45 * upper),
         ellipse(0.9 * chest, 0.8 * upper),
+        ellipse(collar, 0.9 * upper),
+    ]
+    neck = [
+        ellipse(collar, 0.9 * upper),
         ellipse(throat, upper),
         ellipse(throat, upper + 0.5 * skull.semi_axes[2]),
     ]
+    ankle = HEEL_BEHIND_ANKLE * breadth
+    bare = foot(
+        row["foot"],
+        mass * row["foot"].mass / share,
+        length("foot"),
+        far_end(row["shank"], mass * row["shank"].mass / share, length("shank")),
+        ankle - length("foot"),
+    ).placed(-length("shank") * HEAD, np.eye(3))
     return Physique(
         lower=joined(hung("lower_trunk", lower), hung("middle_trunk", lower + middle)).looking(
-            solid(pelvis, below=0.06 * size)
+            solid(pelvis, CLOTH, below=0.06 * size)
         ),
         upper=joined(hung("upper_trunk", upper), hung("head", upper + length("head"))).looking(
-            solid(torso), skull
+            solid(torso, CLOTH), solid(neck, SKIN), skull
         ),
         upper_arm=hung("upper_arm"),
         forearm=joined(hung("forearm"), hung("hand", -length("forearm"))),
         thigh=hung("thigh"),
-        shank=joined(hung("shank"), hung("foot", breadth * HEEL_BEHIND_ANKLE - length("shank"))),
+        shank=joined(hung("shank"), hung("foot", ankle - length("shank")).looking(bare)),
         twist=lower + middle,
         shoulder=np.array(
             [
