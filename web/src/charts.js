@@ -8,6 +8,7 @@ const WHOLE = window.matchMedia("(min-width: 1000px) and (min-height: 620px)"); 
 const LOWEST = 112;
 const HIGHEST = 230;
 const LEGEND = 32;
+const NUMBERS = 54; // pixels beside a chart; as the padding of .legend in page.css
 const TIME_AXIS = 36; // more, of the last panel
 const UNITS = { "\u00b0": "\u00b0", 1: "" }; // as they stand after a number, the others after a space
 const LEAST_ROOM = 1e-2; // of any unit: what stands still is a line, not its rounding
@@ -72,7 +73,7 @@ class Panel {
       scales: { x: { time: false, range: [this.times[0], this.#end()] }, y: { range: padded } },
       axes: [
         this.last ? { ...axis, size: 22, label: "time (s)", labelSize: 18 } : { ...axis, size: 0, values: [] },
-        { ...axis, label: `${title} (${unit})`, size: 46, labelSize: 18, labelGap: 2, space: 26 },
+        { ...axis, label: `${title} (${unit})`, size: NUMBERS, labelSize: 18, labelGap: 2, space: 26, values: tidy },
       ],
       hooks: { draw: [() => this.#mark()] }, // it lays itself out later than it is asked to
       series: [
@@ -159,6 +160,11 @@ class Panel {
     const more = el("details", {}, el("summary", {}, `${others.length} more`), ...others);
     this.legend.replaceChildren(...first, ...(others.length ? [more] : []));
   }
+}
+
+/** Numbers on an axis, without the dust of their rounding and with a real minus sign. */
+function tidy(_, values) {
+  return values.map((value) => String(Number(value.toPrecision(6))).replaceAll("-", "\u2212"));
 }
 
 /** Room above and below, and for what stands still. */

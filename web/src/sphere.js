@@ -97,8 +97,14 @@ export class MomentumSphere {
     if (!width || !this.labels) return;
     this.labels.forEach((label, k) => {
       const tip = new Vector3().setComponent(k, 1.52).project(this.canvas.camera);
-      label.style.transform =
-        `translate(${((tip.x + 1) / 2) * width}px, ${((1 - tip.y) / 2) * height}px) translate(-50%, -50%)`;
+      const x = inside(((tip.x + 1) / 2) * width, label.offsetWidth / 2, width);
+      const y = inside(((1 - tip.y) / 2) * height, label.offsetHeight / 2, height);
+      label.style.transform = `translate(${x}px, ${y}px) translate(-50%, -50%)`;
     });
   }
+}
+
+/** A middle from which something so wide to both sides stays between 0 and the end. */
+function inside(middle, half, end) {
+  return Math.max(half, Math.min(middle, end - half));
 }

@@ -103,7 +103,8 @@ def _panels(history: History, keep: Array) -> list[dict[str, Any]]:
     ):
         columns = _columns(history.model, kind)
         values = history.joint_coordinates[keep]
-        lines = [(history.model.coordinates[k], scale * values[:, k]) for k in columns]
+        names = [name.replace("_", " ") for name in history.model.coordinates]
+        lines = [(names[k], scale * values[:, k]) for k in columns]
         if lines:
             panels.append(_panel(title, unit, digits, lines, _STILL * scale))
     return panels
