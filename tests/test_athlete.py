@@ -549,6 +549,20 @@ class TestMeasured:
             athlete_from_measurements(MEASURED)
 
 
+def test_trunk_and_legs_are_clothed_and_the_rest_is_bare():
+    """Of either sex, however heavy the legs are."""
+    for model in (athlete(1.75, 70.0), athlete(1.62, 55.0, "female", knees=True)):
+        blue = {
+            (body.name.removeprefix("left_"), k)
+            for body in model.bodies
+            for k, shape in enumerate(body.shapes)
+            if shape.color[2] > shape.color[0]
+            if not body.name.startswith("right_")
+        }
+        legs = {("leg", 0), ("leg", 1)} if len(model.bodies) == 8 else {("thigh", 0), ("shank", 0)}
+        assert blue == {("pelvis", 0), ("torso", 0), *legs}
+
+
 class TestShipped:
     PATH = ROOT / "src" / "somersault" / "model" / "shipped" / "gymnast.xml"
 

@@ -11,6 +11,7 @@ from somersault.thesis import Entry, Motion, Result, reproduce, verdict
 from somersault.thesis._drawn import drawn
 from somersault.thesis._motion import Written
 from somersault.thesis._page import ChapterPage, Section, chapter_page, index_page
+from somersault.thesis._page_tables import printed
 
 HOSTILE = {
     "id": "<b>id",
@@ -41,6 +42,21 @@ def test_pages_escape_everything():
         assert bad not in whole, bad
     assert whole.count("<title>") == 2
     assert "a &lt; b &amp; c" in index
+
+
+@pytest.mark.parametrize(
+    ("words", "shown"),
+    [
+        ("0e+00 rad", "0 rad"),
+        ("-3.2e-05 rad", "−3.2 × 10⁻⁵ rad"),
+        ("1e-10, 2.5e+00", "10⁻¹⁰, 2.5"),
+        ("from -0.5 to (-.3, 1.5)", "from −0.5 to (−.3, 1.5)"),
+        ("figures 4-7, fig4-9, 2012-13, k-1, --c", "figures 4-7, fig4-9, 2012-13, k-1, --c"),
+        ("a < -1", "a &lt; −1"),
+    ],
+)
+def test_numbers_are_printed_as_in_a_book(words, shown):
+    assert printed(words) == shown
 
 
 def test_what_is_beyond_the_thesis_is_marked():

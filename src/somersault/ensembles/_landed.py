@@ -102,7 +102,7 @@ def _by_ending(ended: xr.DataArray, order: Array, simulation: Shown) -> tuple[li
     codes = ended.values[order]
     known = np.unique(codes).tolist()
     color = dict(zip(known, LINES, strict=False))
-    key = []
+    key: Key = []
     for code in known:
         count = f"{int((codes == code).sum())}" + (f" of {len(codes)}" if not key else "")
         said = simulation.ending_in_words(ending_words(ended)[code])

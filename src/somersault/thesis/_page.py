@@ -9,7 +9,7 @@ from html import escape
 from importlib.resources import files
 
 from somersault.thesis._motion import Written
-from somersault.thesis._page_tables import COLUMNS, Record, claim_row, claims_table, table
+from somersault.thesis._page_tables import COLUMNS, Record, claim_row, claims_table, printed, table
 from somersault.view import style as look
 
 _BOOK = "<cite>Passive Dynamics in the Control of Gymnastic Maneuvers</cite>"
@@ -68,7 +68,7 @@ computed anew from the shipped models. Each claim compares what the thesis says 
 computation gives, and whether the two agree is computed. {verdict(len(claims), differ)}</p>
 <ul class="counts">
 <li class="yes"><b>{len(claims) - differ}</b>agree</li>
-<li class="no"><b>{differ}</b>misprints or differences, each explained</li>
+<li class="no"><b>{differ}</b>{_misprints(differ)}, explained</li>
 <li><b>{pictures}</b>{"picture" if pictures == 1 else "pictures"}</li>
 <li><b>{motions}</b>{"motion" if motions == 1 else "motions"}</li>
 </ul>"""
@@ -256,8 +256,8 @@ def _section(section: Section) -> str:
         parts.append('<p class="beyond">Beyond the thesis: not in its text or figures.</p>')
     who = "" if section.beyond else '<span class="who">Thesis:</span> '
     words = (
-        f"<p>{who}{escape(section.says)}</p>"
-        f'<p><span class="who">Here:</span> {escape(section.ours)}</p>'
+        f"<p>{who}{printed(section.says)}</p>"
+        f'<p><span class="who">Here:</span> {printed(section.ours)}</p>'
     )
     made_by = f"<code>somersault reproduce {escape(section.id)}</code>"
     if section.picture is None:
@@ -298,7 +298,7 @@ def _motion(motion: Written, title: str) -> str:
             f'preload="none" aria-label="{escape(title)}"></video>'
         )
     who = "" if len(motion.names) < 2 else f"From left to right: {', '.join(motion.names)}. "
-    slow = "" if motion.speed == 1 else f" at {motion.speed:g} of the real speed"
+    slow = "" if motion.speed == 1 else f", at {motion.speed:.3g} times real speed"
     what = "A still" if motion.film is None else f"The film{slow}"
     links = _files((motion.film, "MP4"), (motion.still, "still"), (motion.data, "CSV"))
     return (
@@ -311,6 +311,10 @@ def _motion(motion: Written, title: str) -> str:
 def _files(*links: tuple[str | None, str]) -> str:
     """Links to those files that are there."""
     return " · ".join(f'<a href="{escape(to)}">{words}</a>' for to, words in links if to)
+
+
+def _misprints(count: int) -> str:
+    return "misprint or difference" if count == 1 else "misprints or differences"
 
 
 def _agreement(count: int, agree: int) -> str:

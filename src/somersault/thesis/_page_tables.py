@@ -2,19 +2,38 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from typing import Any
 
 Record = Mapping[str, Any]
 COLUMNS = ("", "where", "claim", "thesis", "computed", "id")
+_POWER = re.compile(r"(?<![\w.])([-−]?\d+(?:\.\d+)?)e([+-]\d+)(?!\w)")
+_MINUS = re.compile(r"(?<![\w.)\]-])-(?=\.?\d)")
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def printed(words: str) -> str:
+    """Words as HTML, with numbers as a book has them: a real minus, and powers of ten."""
+    return escape(_MINUS.sub("−", _POWER.sub(_power, words)))
+
+
+def _power(found: re.Match[str]) -> str:
+    mantissa, exponent = found[1], int(found[2])
+    if float(mantissa.replace("−", "-")) == 0:
+        return "0"
+    if exponent == 0:
+        return mantissa
+    power = f"10{str(exponent).translate(_RAISED)}"
+    return power if mantissa == "1" else f"{mantissa} × {power}"
 
 
 def table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Rows under a header."""
     head = "".join(f"<th>{escape(cell)}</th>" for cell in header)
     body = "".join(
-        "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
+        "<tr>" + "".join(f"<td>{printed(cell)}</td>" for cell in row) + "</tr>" for row in rows
     )
     return (
         f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>'
@@ -32,13 +51,13 @@ def claims_table(bodies: str, id: str = "") -> str:
 def claim_row(claim: Record, notes: bool, link: str = "") -> str:
     """A row; its ID is a link, or where a link leads."""
     mark = '<td class="yes">✓ agrees</td>' if claim["holds"] else '<td class="no">≠ differs</td>'
-    words = escape(str(claim["claim"]))
+    words = printed(str(claim["claim"]))
     if notes and claim["note"]:
-        words += f'<br><span class="note">{escape(str(claim["note"]))}</span>'
+        words += f'<br><span class="note">{printed(str(claim["note"]))}</span>'
     unit = "" if claim["unit"] in ("", "1") else f" {claim['unit']}"
     within = "" if claim["tolerance"] is None else f" ± {claim['tolerance']:g}"
-    thesis = escape(_shown(claim["thesis"]) + within + unit)
-    computed = escape(_shown(claim["computed"]) + unit)
+    thesis = printed(_shown(claim["thesis"]) + within + unit)
+    computed = printed(_shown(claim["computed"]) + unit)
     id = escape(str(claim["id"]))
     place = "" if link else f' id="{id}"'
     name = f'<a href="{escape(link)}">{id}</a>' if link else id
