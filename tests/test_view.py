@@ -6,8 +6,10 @@ import subprocess
 import sys
 
 import numpy as np
+import pytest
 
-from somersault.view import charts, contact_sheet
+import somersault as so
+from somersault.view import charts, contact_sheet, time_histories
 from somersault.view import style as look
 
 
@@ -42,6 +44,26 @@ def test_svg_repeats_byte_for_byte():
             return look.saved(figure, "svg")
 
     assert drawn() == drawn()
+
+
+def test_names_behind_lines_stand_apart_and_as_their_ends_do():
+    model = so.athlete(1.7, 60.0)
+    q = np.zeros((2, len(model.coordinates)))
+    q[1, :6] = [0.5, 0.5, 0.5, 0.51, -0.4, 0.0]  # three end in one place, and one does not move
+    base = {"base_position": np.zeros((2, 3)), "base_quaternion": np.tile([1.0, 0, 0, 0], (2, 1))}
+    held = so.Recording(
+        model, np.array([0.0, 1.0]), **base, joint_coordinates=q, angles=np.zeros((2, 3))
+    )
+    joints = time_histories(held).axes[2]
+    named = {text.get_text(): text.get_position()[1] for text in joints.texts}
+    assert list(named) == [name.replace("_", " ") for name in model.coordinates[:5]]
+    places = np.array(list(named.values()))
+    assert np.diff(np.sort(places)).min() > 0.089
+    assert np.argmax(places) == 3
+    assert np.argmin(places) == 4
+    low, high = joints.get_ylim()
+    assert places[:4].mean() == pytest.approx((0.5025 - low) / (high - low))  # about their ends
+    assert places[4] == pytest.approx((-0.4 - low) / (high - low))
 
 
 def test_locus_draws_every_root():
