@@ -74,8 +74,8 @@ def landings(
         chosen = _picked(good.rename("good").to_dataset(), plan.dims, numbers)["good"].values
         colors, key = _of_two(chosen[order], "landed")
     elif tolerance is not None:
-        what = f"landed: landing error at most {tolerance:g} rad"
-        colors, key = _of_two(within(runs, tolerance).values[order], what)
+        landed = within(runs, tolerance).values[order]
+        colors, key = _of_two(landed, f"landed: landing error at most {tolerance:g} rad")
     else:
         colors, key = _by_ending(runs[ENDED], order, simulation)
     ends = _ends(plan, simulation, numbers[order])
