@@ -20,6 +20,7 @@ from somersault.engine._step import (
     FLYING,
     TOO_MANY_STEPS,
     Rows,
+    carry,
     renew,
     step,
 )
@@ -91,6 +92,9 @@ class Integrator:
         Of the vector of `slope`, a bound on each step while something is watched.
     changing
         How many parameters, the first ones, are those of `Pieces`.
+    tick
+        Of the vector of `slope`, what the last numbers of the state become at each tick; they have
+        no slope, and stay as they are from tick to tick.
 
     Examples
     --------
@@ -110,13 +114,16 @@ class Integrator:
         watch: ca.Function | None = None,
         longest: ca.Function | None = None,
         changing: int = 0,
+        tick: ca.Function | None = None,
     ) -> None:
-        self.state: int = slope.nnz_out(0)
+        carried = 0 if tick is None else tick.nnz_out(0)
+        self.state: int = slope.nnz_out(0) + carried
         self.inputs: int = slope.nnz_in(0)
         self.changing = changing
         self._slope, self._gauge, self._watch, self._longest = slope, gauge, watch, longest
+        self._tick = tick
         watched = 0 if watch is None else watch.nnz_out(0)
-        self._rows = Rows(self.state, self.inputs - self.state - 1, watched)
+        self._rows = Rows(self.state, self.inputs - self.state - 1, watched, carried)
         self.outputs: int = self._rows.outputs
 
     @cached_property
@@ -126,10 +133,12 @@ class Integrator:
             "gauge": self._gauge,
             "watch": self._watch,
             "longest": self._longest,
+            "tick": self._tick,
         }
         texts = [expression(f, name) for name, f in functions.items() if f is not None]
         event = self._gauge is not None
         texts += [step(self._rows, event), renew(self._rows, event)]
+        texts += [carry(self._rows)] if self._rows.carried else []
         engine = compiled(_lanes.fly(self._rows, self.changing), module(texts))
         return compiled_function(engine, "fly", ctypes.c_void_p)
 
@@ -144,6 +153,7 @@ class Integrator:
         pieces: Pieces | None = None,
         first_step: float = _FIRST_STEP,
         most_steps: int = MOST_STEPS,
+        every: float = np.inf,
     ) -> Solution:
         """Integrate many starts from time 0.
 
@@ -165,11 +175,13 @@ class Integrator:
             The first step that is tried, s.
         most_steps
             A flight that has taken so many ends.
+        every
+            Between ticks, the first of which is at 0, s.
 
         Returns
         -------
         Solution
-            Where the gauge changes sign, an event is found to rounding.
+            At a sample that is at a tick, what was before it. Where the gauge changes sign, an event is found to rounding.
 
         Raises
         ------
@@ -188,6 +200,8 @@ class Integrator:
         lasting = self._rows.parameters - self.changing
         if (table.shape[2], still.shape[1], first.shape[1]) != (self.changing, lasting, outputs):
             raise ValueError("not the parameters, or not the states, of these equations")
+        if self._rows.carried and not 0 < every < np.inf:
+            raise ValueError("what is carried needs ticks")
         out = np.empty((count, samples.shape[1], outputs))
         last = np.empty((count, outputs + _lanes.LAST_MORE))
         following = np.zeros(1, np.int64)
@@ -195,7 +209,7 @@ class Integrator:
             first=first.ctypes.data, out=out.ctypes.data, last=last.ctypes.data,
             next=following.ctypes.data, count=count, sample_count=samples.shape[1],
             pieces=ends.shape[1], tolerance=tolerance, most_steps=most_steps,
-            first_step=first_step,
+            first_step=first_step, tick=every,
         )  # fmt: skip
         job.arrays = first, still, table, ends, samples, out, last, following
         for name, array in (

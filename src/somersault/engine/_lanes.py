@@ -36,6 +36,7 @@ class Job(ctypes.Structure):
     those that stay are `still` [i still_by …]. `out` (count, sample_count, outputs) receives what
     there is at each of `samples` [i samples_by …], or was at the end of a flight that ended before;
     `last` (count, outputs + 3) what there is at the end, when that was, the status and the steps.
+    Every `tick`, from time 0 on, what flights carry is given anew.
     `next` holds the flight that is next; where `stop` is no longer 0 all flights are given up. That
     is all that threads share.
     """
@@ -60,14 +61,16 @@ class Job(ctypes.Structure):
         ("tolerance", ctypes.c_double),
         ("most_steps", ctypes.c_double),
         ("first_step", ctypes.c_double),
+        ("tick", ctypes.c_double),
     )
 
 
 # What is left to be done for a lane when it has been served.
-_NOTHING, _SLOPE, _LEAVE = range(3)
+_NOTHING, _SLOPE, _TICK, _LEAVE = range(4)
 
-# Integers kept for each lane: the flight it flies, its piece, and the sample that is next.
-_FLIGHT, _PIECE, _SAMPLE = range(3)
+# Integers kept for each lane: the flight it flies, its piece, and what is next of samples and
+# ticks.
+_FLIGHT, _PIECE, _SAMPLE, _NEXT_TICK = range(4)
 
 
 class _Lane:
@@ -146,7 +149,23 @@ class _Lane:
             flow.leave_if(flow.icmp_signed(">=", following, pieces), settled)
             self._begin_piece(flight, following)
             flow.store(integer(_SLOPE), left)
+        if self._rows.carried:
+            self._tick(time, left)
         return flow.icmp_signed("<", flow.read(self._which(_PIECE), INTEGER), pieces)
+
+    def _tick(self, time: Any, left: Any) -> None:
+        """See to a tick that was reached, and that the next one is not missed."""
+        flow, until, which = self._flow, self._control(one.UNTIL), self._which(_NEXT_TICK)
+
+        def due() -> Any:
+            return flow.fmul(flow.sitofp(flow.read(which, INTEGER), DOUBLE), self._job("tick"))
+
+        with flow.repeated() as ahead:
+            flow.leave_if(flow.fcmp_unordered("<", time, due()), ahead)
+            flow.store(flow.add(flow.read(which, INTEGER), integer(1)), which)
+            flow.store(integer(_TICK), left)
+        tick, other = due(), flow.read(until)
+        flow.store(flow.select(flow.fcmp_ordered("<", tick, other), tick, other), until)
 
     def _finish(self) -> None:
         """Hand back how a flight ended, also as all samples that it did not reach."""
@@ -169,6 +188,9 @@ class _Lane:
         self._fill(
             self._x, rows.before_watched, flow.place(start, integer(rows.state)), rows.watched
         )
+        self._fill(
+            self._z, rows.moving, flow.place(start, integer(rows.moving)), rows.carried
+        )
         flow.store(double(0.0), self._place(self._x, rows.state))
         still = self._entry("still", flight, integer(0))
         for block in (self._x, self._z):
@@ -182,6 +204,7 @@ class _Lane:
         flow.store(flight, self._which(_FLIGHT))
         flow.store(integer(0), self._which(_PIECE))
         flow.store(integer(0), self._which(_SAMPLE))
+        flow.store(integer(0), self._which(_NEXT_TICK))
 
     def _begin_piece(self, flight: Any, piece: Any) -> None:
         """Put the parameters of a piece into the lane."""
@@ -214,7 +237,7 @@ class _Lane:
 
 def fly(rows: Rows, changing: int) -> str:
     """LLVM text of `void fly(Job *)`: the flights of the queue, eight at a time, until there are
-    none. It calls @step and @renew.
+    none. It calls @step, @renew and, where something is carried, @carry.
 
     The first `changing` parameters are those that change from piece to piece.
     """
@@ -222,27 +245,36 @@ def fly(rows: Rows, changing: int) -> str:
     memory = [POINTER] * len(one.MEMORY)
     step = code.declared("step", memory, LANE_BITS)
     renew = code.declared("renew", [*memory, LANE_BITS])
+    carry = code.declared("carry", [*memory, LANE_BITS]) if rows.carried else None
     serve = _serve(code, rows, changing)
     flow, (job,) = code.written("fly", [POINTER])
     blocks = _memory(flow, rows, job)
     x, z, c = (blocks[name] for name in (one.BLOCK, one.TRIAL, one.CONTROL))
     stop = flow.field(Job, job, "stop")
-    integers = flow.room(INTEGER, 3 * LANES)
-    active, stopped, fresh = (flow.room(kind) for kind in (INTEGER, LANE_BITS, LANE_BITS))
+    integers = flow.room(INTEGER, 4 * LANES)
+    active = flow.room(INTEGER)
+    stopped, fresh, ticked = (flow.room(LANE_BITS) for _ in range(3))
     flow.store(integer(LANES), active)
     flow.store(LANE_BITS(-1), stopped)
     with flow.repeated() as over:
         flow.store(LANE_BITS(0), fresh)
+        flow.store(LANE_BITS(0), ticked)
         with flow.counted(integer(0), integer(LANES)) as lane:
             place = flow.shl(LANE_BITS(1), flow.trunc(lane, LANE_BITS))
             stands = flow.and_(flow.read(stopped, LANE_BITS), place)
             with flow.if_then(flow.icmp_unsigned("!=", stands, LANE_BITS(0))):
                 left = flow.call(serve, [job, x, z, c, integers, lane])
-                with flow.if_then(flow.icmp_signed("==", left, integer(_SLOPE))):
-                    flow.store(flow.or_(flow.read(fresh, LANE_BITS), place), fresh)
+                for code_left, lanes in ((_SLOPE, (fresh,)), (_TICK, (fresh, ticked))):
+                    with flow.if_then(flow.icmp_signed("==", left, integer(code_left))):
+                        for which in lanes:
+                            flow.store(flow.or_(flow.read(which, LANE_BITS), place), which)
                 with flow.if_then(flow.icmp_signed("==", left, integer(_LEAVE))):
                     flow.store(flow.sub(flow.read(active, INTEGER), integer(1)), active)
         flow.leave_if(flow.icmp_signed("==", flow.read(active, INTEGER), integer(0)), over)
+        if carry is not None:
+            bits = flow.read(ticked, LANE_BITS)
+            with flow.if_then(flow.icmp_unsigned("!=", bits, LANE_BITS(0))):
+                flow.call(carry, [*blocks.values(), bits])
         bits = flow.read(fresh, LANE_BITS)
         with flow.if_then(flow.icmp_unsigned("!=", bits, LANE_BITS(0))):
             flow.call(renew, [*blocks.values(), bits])

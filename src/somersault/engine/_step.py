@@ -18,7 +18,7 @@ CONTROL = "%c"  # what is below
 SLOPES = "%k"  # slopes at the twelve stages, then at the end of the step
 LIMIT = "%g"  # one row: what @gauge or @longest gives
 LOOK = "%w"  # what @watch reads: `Rows.look`
-SEEN = "%v"  # what @watch gives
+SEEN = "%v"  # what @watch or @tick gives
 MEMORY = (BLOCK, TRIAL, CONTROL, SLOPES, LIMIT, LOOK, SEEN)
 
 # Rows of the control; the last two are the same in all lanes and at all times.
@@ -38,11 +38,21 @@ _MOST_TRIALS = 60.0  # of the search for an event
 
 @dataclass(frozen=True)
 class Rows:
-    """How many rows a block has: `state`, then the time, then `parameters`, then `watched`."""
+    """How many rows a block has: `state`, then the time, then `parameters`, then `watched`.
+
+    The last rows of the state are `carried`: they stay as they are but for ticks, at which each is
+    given anew.
+    """
 
     state: int
     parameters: int
     watched: int = 0
+    carried: int = 0
+
+    @property
+    def moving(self) -> int:
+        """Those of the state that are integrated."""
+        return self.state - self.carried
 
     @property
     def before_watched(self) -> int:
@@ -69,8 +79,8 @@ class Rows:
     def memory(self) -> dict[str, int]:
         """Rows that each part of `MEMORY` needs."""
         sizes = (
-            self.inputs, self.before_watched, CONTROL_ROWS, 13 * self.state, 1, self.look,
-            max(self.watched, 1),
+            self.inputs, self.before_watched, CONTROL_ROWS, 13 * self.moving, 1, self.look,
+            max(self.watched, self.carried, 1),
         )  # fmt: skip
         return dict(zip(MEMORY, sizes, strict=True))
 
@@ -95,9 +105,9 @@ def step(rows: Rows, event: bool) -> str:
     search = _Search(v, time, status) if event else None
     if search:
         taken = v.where(search.searching, search.middle, taken)
-    new = _stages(v, rows.state, taken, time)
-    squared = _error(v, rows.state, taken, new)
-    v.call("rhs", TRIAL, v.at(SLOPES, 12 * rows.state))
+    new = _stages(v, rows, taken, time)
+    squared = _error(v, rows.moving, taken, new)
+    v.call("rhs", TRIAL, v.at(SLOPES, 12 * rows.moving))
     good = v.both(flying, v.test("ole", squared, number(1.0)))
     accepted = good
     if search:
@@ -114,9 +124,9 @@ def step(rows: Rows, event: bool) -> str:
             v.store(BLOCK, row, v.where(accepted, value, v.load(BLOCK, row)))
     v.store(CONTROL, TIME, now)
     v.store(BLOCK, rows.state, now)
-    for row in range(rows.state):
+    for row in range(rows.moving):
         v.store(BLOCK, row, v.where(accepted, new[row], v.load(BLOCK, row)))
-        last = v.load(SLOPES, 12 * rows.state + row)
+        last = v.load(SLOPES, 12 * rows.moving + row)
         v.store(SLOPES, row, v.where(accepted, last, v.load(SLOPES, row)))
     at_end = v.both(v.test("oeq", status, number(FLYING)), v.outside(short_of_end))
     over = v.both(v.test("ogt", status, number(FLYING)), v.test("olt", status, number(SEARCHING)))
@@ -206,11 +216,11 @@ def _next_length(
 
 def _watched(v: Vectors, rows: Rows, before: str, after: str) -> list[str]:
     """What is watched, after the step from the block to the trial between the two times."""
-    state = rows.state
+    state, moving, still = rows.state, rows.moving, [number(0.0)] * rows.carried
     values = [v.load(BLOCK, row) for row in range(state)]
-    values += [v.load(SLOPES, row) for row in range(state)]
+    values += [*(v.load(SLOPES, row) for row in range(moving)), *still]
     values += [v.load(TRIAL, row) for row in range(state)]
-    values += [v.load(SLOPES, 12 * state + row) for row in range(state)]
+    values += [*(v.load(SLOPES, 12 * moving + row) for row in range(moving)), *still]
     values += [before, after]
     values += [v.load(BLOCK, row) for row in range(state + 1, rows.inputs)]
     for row, value in enumerate(values):
@@ -219,18 +229,19 @@ def _watched(v: Vectors, rows: Rows, before: str, after: str) -> list[str]:
     return [v.load(SEEN, row) for row in range(rows.watched)]
 
 
-def _stages(v: Vectors, state: int, step: str, time: str) -> list[str]:
+def _stages(v: Vectors, rows: Rows, step: str, time: str) -> list[str]:
     """All twelve slopes (the first is there) and the new state, in the trial and returned."""
+    moving = rows.moving
     for stage, weights in enumerate(table.STAGES, 1):
-        for row in range(state):
-            v.store(TRIAL, row, _ahead(v, state, row, step, weights))
-        v.store(TRIAL, state, v.multiply_add(number(table.NODES[stage]), step, time))
-        v.call("rhs", TRIAL, v.at(SLOPES, stage * state))
+        for row in range(moving):
+            v.store(TRIAL, row, _ahead(v, moving, row, step, weights))
+        v.store(TRIAL, rows.state, v.multiply_add(number(table.NODES[stage]), step, time))
+        v.call("rhs", TRIAL, v.at(SLOPES, stage * moving))
     new = []
-    for row in range(state):
-        new.append(_ahead(v, state, row, step, table.WEIGHTS))
+    for row in range(moving):
+        new.append(_ahead(v, moving, row, step, table.WEIGHTS))
         v.store(TRIAL, row, new[-1])
-    v.store(TRIAL, state, v.add(time, step))
+    v.store(TRIAL, rows.state, v.add(time, step))
     return new
 
 
@@ -263,11 +274,25 @@ def renew(rows: Rows, event: bool) -> str:
     where they are."""
     v = Vectors()
     lanes = v.unpacked("%lanes")
-    v.call("rhs", BLOCK, v.at(SLOPES, rows.state))
-    for row in range(rows.state):
-        new = v.load(SLOPES, rows.state + row)
+    v.call("rhs", BLOCK, v.at(SLOPES, rows.moving))
+    for row in range(rows.moving):
+        new = v.load(SLOPES, rows.moving + row)
         v.store(SLOPES, row, v.where(lanes, new, v.load(SLOPES, row)))
     if event:
         v.call("gauge", BLOCK, LIMIT)
         v.store(CONTROL, GAUGE, v.where(lanes, v.load(LIMIT, 0), v.load(CONTROL, GAUGE)))
     return v.function("renew", MEMORY, mask="%lanes")
+
+
+def carry(rows: Rows) -> str:
+    """LLVM text of `void carry(MEMORY…, i8 lanes)`, which gives lanes what @tick makes of where
+    they are for what they carry."""
+    v = Vectors()
+    lanes = v.unpacked("%lanes")
+    v.call("tick", BLOCK, SEEN)
+    for k in range(rows.carried):
+        row = rows.moving + k
+        value = v.where(lanes, v.load(SEEN, k), v.load(BLOCK, row))
+        for block in (BLOCK, TRIAL):
+            v.store(block, row, value)
+    return v.function("carry", MEMORY, mask="%lanes")
