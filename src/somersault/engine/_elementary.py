@@ -1,7 +1,7 @@
-"""Sine, cosine and arc tangent on vectors, from additions and multiplications.
+"""Sine, cosine, arc tangent and logarithm on vectors, from additions and multiplications.
 
 Sine and cosine are the fdlibm polynomials after a three-part reduction by π/2 (good to 1 ulp for
-|x| < 10⁵); the arc tangent is the Cephes rational approximation.
+|x| < 10⁵), as is the logarithm; the arc tangent is the Cephes rational approximation.
 """
 
 from __future__ import annotations
@@ -42,6 +42,16 @@ _ATAN_Q = (
     2.485846490142306297962e1,
     1.0,
 )
+_LOGARITHM = (
+    6.666666666666735130e-01,
+    3.999999999940941908e-01,
+    2.857142874366239149e-01,
+    2.222219843214978396e-01,
+    1.818357216161805012e-01,
+    1.531383769920937332e-01,
+    1.479819860511658591e-01,
+)
+_LN_2_PARTS = (6.93147180369123816490e-01, 1.90821492927058770002e-10)
 _TAN_EIGHTH = 0.41421356237309503  # tan(π/8)
 
 
@@ -95,3 +105,23 @@ def arc_tangent(v: Vectors, y: str, x: str) -> str:
     flat = v.where(behind, number(3.141592653589793), number(0.0))
     offset = v.where(steep, number(1.5707963267948966), flat)
     return v.with_sign(v.add(angle, offset), y)
+
+
+def logarithm(v: Vectors, x: str) -> str:
+    """ln x of a normal number above 0; not a number of others."""
+    bits = v.bits(x)
+    one = 0x3FF << 52
+    fraction = v.of_bits(v.integers("or", v.integers("and", bits, 2**52 - 1), one))
+    power = v.whole(v.integers("sub", v.integers("lshr", bits, 52), 1023))
+    wide = v.test("ogt", fraction, number(1.4142135623730951))
+    fraction = v.where(wide, v.mul(fraction, number(0.5)), fraction)
+    power = v.where(wide, v.add(power, number(1.0)), power)
+    f = v.sub(fraction, number(1.0))
+    s = v.div(f, v.add(f, number(2.0)))
+    z = v.mul(s, s)
+    half = v.mul(number(0.5), v.mul(f, f))
+    series = v.mul(z, v.polynomial(z, _LOGARITHM))
+    high, low = (v.mul(power, number(part)) for part in _LN_2_PARTS)
+    small = v.sub(v.sub(half, v.multiply_add(s, v.add(half, series), low)), f)
+    positive = v.test("ogt", x, number(0.0))
+    return v.where(positive, v.sub(high, small), number(float("nan")))

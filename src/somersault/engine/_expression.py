@@ -11,7 +11,7 @@ from itertools import accumulate
 
 import casadi as ca
 
-from somersault.engine._elementary import arc_tangent, sine_cosine
+from somersault.engine._elementary import arc_tangent, logarithm, sine_cosine
 from somersault.engine._vectors import Vectors, number
 
 
@@ -103,4 +103,5 @@ _OPERATIONS: dict[int, Callable[..., str]] = {
     ca.OP_SIN: lambda v, a: v.sine_cosine(a)[0],
     ca.OP_COS: lambda v, a: v.sine_cosine(a)[1],
     ca.OP_ATAN2: arc_tangent,
+    ca.OP_LOG: logarithm,
 }

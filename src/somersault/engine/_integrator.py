@@ -153,7 +153,7 @@ class Integrator:
         pieces: Pieces | None = None,
         first_step: float = _FIRST_STEP,
         most_steps: int = MOST_STEPS,
-        every: float = np.inf,
+        every: float | None = None,
     ) -> Solution:
         """Integrate many starts from time 0.
 
@@ -181,7 +181,8 @@ class Integrator:
         Returns
         -------
         Solution
-            At a sample that is at a tick, what was before it. Where the gauge changes sign, an event is found to rounding.
+            At a sample that is at a tick, what was before it. Where the gauge changes sign, an
+            event is found to rounding.
 
         Raises
         ------
@@ -200,7 +201,7 @@ class Integrator:
         lasting = self._rows.parameters - self.changing
         if (table.shape[2], still.shape[1], first.shape[1]) != (self.changing, lasting, outputs):
             raise ValueError("not the parameters, or not the states, of these equations")
-        if self._rows.carried and not 0 < every < np.inf:
+        if self._rows.carried and not (every and 0 < every < np.inf):
             raise ValueError("what is carried needs ticks")
         out = np.empty((count, samples.shape[1], outputs))
         last = np.empty((count, outputs + _lanes.LAST_MORE))
@@ -209,7 +210,7 @@ class Integrator:
             first=first.ctypes.data, out=out.ctypes.data, last=last.ctypes.data,
             next=following.ctypes.data, count=count, sample_count=samples.shape[1],
             pieces=ends.shape[1], tolerance=tolerance, most_steps=most_steps,
-            first_step=first_step, tick=every,
+            first_step=first_step, tick=every or np.inf,
         )  # fmt: skip
         job.arrays = first, still, table, ends, samples, out, last, following
         for name, array in (

@@ -188,9 +188,7 @@ class _Lane:
         self._fill(
             self._x, rows.before_watched, flow.place(start, integer(rows.state)), rows.watched
         )
-        self._fill(
-            self._z, rows.moving, flow.place(start, integer(rows.moving)), rows.carried
-        )
+        self._fill(self._z, rows.moving, flow.place(start, integer(rows.moving)), rows.carried)
         flow.store(double(0.0), self._place(self._x, rows.state))
         still = self._entry("still", flight, integer(0))
         for block in (self._x, self._z):

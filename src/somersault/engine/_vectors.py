@@ -213,6 +213,10 @@ class Vectors:
             b = "<" + ", ".join([f"i64 {b}"] * LANES) + ">"
         return self._emit(f"{what} {BITS} {a}, {b}")
 
+    def whole(self, a: str) -> str:
+        """Integers as doubles."""
+        return self._emit(f"sitofp {BITS} {a} to {VECTOR}")
+
     def odd(self, a: str) -> str:
         """A mask of the lanes whose integer is odd."""
         return self._emit(f"trunc {BITS} {a} to {MASK}")

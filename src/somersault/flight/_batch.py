@@ -26,6 +26,7 @@ from somersault.flight._system import System, system
 from somersault.flight._takeoff import Takeoff
 from somersault.flight._tape import Tape, recorded, recorded_each
 from somersault.flight.behaviours import JointPlan, kinds
+from somersault.laws import seeds
 from somersault.model import Model
 from somersault.motion import Path
 from somersault.simulation import Name, Numbers
@@ -155,7 +156,16 @@ class Begun:
     def rows(self) -> Array:
         """States at takeoff, with room behind them for what is watched, (N, state + watched)."""
         s = self.starts
-        return self.batch.system.start(s.quaternion, s.omega, s.q, s.u)
+        return self.batch.system.start(s.quaternion, s.omega, s.q, s.u, self._sensed)
+
+    @property
+    def _sensed(self) -> Array:
+        """What is carried of the body before the first tick: its angles, and the noise's state."""
+        angles, layout = self.starts.angles, self.batch.system.layout
+        if not layout.noise:
+            return angles
+        which = np.broadcast_to(self.starts.values["takeoff", "noise"], len(angles))
+        return np.concatenate([angles, seeds(which)], 1)
 
     def solve(self, samples: Array, accuracy: float, most_steps: int = MOST_STEPS) -> Solution:
         """Integrate the flights.

@@ -93,4 +93,5 @@ class Course:
         pieces = Pieces(self.knots[:, 1:], self._now(self.knots[:, :-1]))
         return self._system.integrator.solve(
             first, self._still, samples, tolerance, pieces=pieces, most_steps=most_steps,
+            every=self._system.layout.every,
         )  # fmt: skip

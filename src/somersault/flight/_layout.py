@@ -1,8 +1,10 @@
 """Where the numbers of a flight stand: in its state, and among its parameters.
 
-The state is (quaternion, ω, coordinates and speeds of the joints that move freely). Where no joint
-moves freely only the attitude is unknown: then the state is the quaternion alone, and ω is what
-the angular momentum, three parameters more, leaves it. Parameters are first those that change on
+The state is (quaternion, ω, coordinates and speeds of the joints that are part of it). Where none
+is only the attitude is unknown: then the state is the quaternion alone, and ω is what the angular
+momentum, three parameters more, leaves it. Where joints have laws the state ends with what is
+carried from tick to tick: the angles as they were last sensed, the state of the noise, and each
+joint's own. Parameters are first those that change on
 the way (paths, the motor tape), then those that stay (bodies, joints, momentum).
 """
 
@@ -10,24 +12,28 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from somersault._core.errors import SomersaultError
 from somersault.flight.behaviours import JointTakeoff
+from somersault.laws import STATE as NOISE
 from somersault.model import Joint, Model
 from somersault.motion import DEGREE, TAPE_DEGREE
 
 ATTITUDE, RATE = 4, 3  # of a state: quaternion and ω
+ANGLES = 3  # of what is carried: somersault, tilt and twist
 PATH = 1 + DEGREE + 1  # parameters of a path: since when, and its polynomial
 TAPED = TAPE_DEGREE + 1  # of each joint on the tape: its torque's polynomial
 
 
 @dataclass(frozen=True)
 class Slot:
-    """Where one joint's numbers stand: `q` and `u` in the state, `paths` and `lasting` among the
-    parameters; `tape` the polynomial of its torque on the motor tape."""
+    """Where one joint's numbers stand: `q`, `u` and `carried` in the state, `paths` and `lasting`
+    among the parameters; `tape` the polynomial of its torque on the motor tape."""
 
     joint: Joint
     kind: JointTakeoff
     q: range
     u: range
+    carried: range
     paths: tuple[range, ...]
     lasting: range
     tape: range
@@ -35,11 +41,15 @@ class Slot:
 
 @dataclass(frozen=True)
 class Layout:
-    """The places of all of them; `tape` is where the motor tape's time of origin stands."""
+    """The places of all of them; `tape` is where the motor tape's time of origin stands, `sensed`
+    and `noise` what is carried of the body, `every` the time between ticks (s) if there are any."""
 
     slots: tuple[Slot, ...]
     bound: bool
     state: int
+    sensed: range
+    noise: range
+    every: float | None
     changing: int
     bodies: range
     momentum: range
@@ -65,7 +75,12 @@ def layout(
     bound = not moving
     q = ATTITUDE if bound else ATTITUDE + RATE
     u = q + sum(joint.coordinates for joint in moving)
-    state = u + sum(joint.speeds for joint in moving)
+    moved = u + sum(joint.speeds for joint in moving)
+    every = _every(pairs)
+    sensed = range(moved, moved + (ANGLES if every else 0))
+    noisy = any(kind.is_noisy() for kind in kinds)
+    noise = range(sensed.stop, sensed.stop + (NOISE if noisy else 0))
+    carried = noise.stop
     path, origin = 0, PATH * sum(kind.path_count for kind in kinds)
     taped = origin + 1
     played = sum(is_taped(kind) for kind in kinds) if tape else 0
@@ -77,18 +92,33 @@ def layout(
         n_p = len(kind.parameters(joint))
         n_t = TAPED if tape and is_taped(kind) else 0
         paths = tuple(range(path + PATH * k, path + PATH * (k + 1)) for k in range(kind.path_count))
+        n_c = kind.carried()
         slot = Slot(
-            joint, kind, range(q, q + n_q), range(u, u + n_u), paths,
+            joint, kind, range(q, q + n_q), range(u, u + n_u), range(carried, carried + n_c), paths,
             range(lasting, lasting + n_p), range(taped, taped + n_t),
         )  # fmt: skip
         slots.append(slot)
         q, u, lasting, taped = q + n_q, u + n_u, lasting + n_p, taped + n_t
-        path += PATH * kind.path_count
+        path, carried = path + PATH * kind.path_count, carried + n_c
     momentum = range(lasting, lasting + (RATE if bound else 0))
     return Layout(
-        tuple(slots), bound, state, changing, range(changing, changing + len(bodies)), momentum,
-        momentum.stop, origin if tape else None,
+        tuple(slots), bound, carried, sensed, noise, every, changing,
+        range(changing, changing + len(bodies)), momentum, momentum.stop, origin if tape else None,
     )  # fmt: skip
+
+
+def _every(pairs: list[tuple[Joint, JointTakeoff]]) -> float | None:
+    """The time between the ticks of all laws, s; SomersaultError where they differ."""
+    every = None
+    for joint, kind in pairs:
+        one = kind.sampling()
+        if None not in (one, every) and one != every:
+            raise SomersaultError(
+                f"joint {joint.name} senses every {one:g} s, and another one every {every:g} s; "
+                "the laws of a flight have the same ticks, so give them the same time"
+            )
+        every = every if one is None else one
+    return every
 
 
 def is_taped(kind: JointTakeoff) -> bool:

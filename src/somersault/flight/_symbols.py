@@ -23,7 +23,9 @@ from somersault.dynamics import (
 from somersault.dynamics.vectors import Vec, matvec, solve_symmetric, vsub
 from somersault.flight._layout import ATTITUDE, RATE, Layout, Slot, layout
 from somersault.flight._plane import turning
-from somersault.flight.behaviours import Coupled, Here, JointTakeoff, Known
+from somersault.flight._watch import VELOCITIES, named, nearest
+from somersault.flight.behaviours import Coupled, Here, JointTakeoff, Known, Senses
+from somersault.laws import Noise
 from somersault.model import Model
 from somersault.motion import polynomial
 
@@ -68,7 +70,7 @@ class Symbols:
         for slot in [s for s in self.layout.slots if s not in led] + led:
             here = self.here[slot.joint.name]
             if slot.kind.in_state:
-                result[slot.joint.name] = Known(here.q, here.u, [])
+                result[slot.joint.name] = Known(here.q, here.u, slot.kind.accelerations(here))
             else:
                 leader = result[slot.kind.leader] if isinstance(slot.kind, Coupled) else None
                 result[slot.joint.name] = slot.kind.place(here.following(leader))
@@ -89,6 +91,7 @@ class Symbols:
         return Here(
             slot.joint, self._at(self.y, slot.q), self._at(self.y, slot.u), self.t,
             _Numbers(name, numbers), tuple(paths), self._outboard_of(name), tape,
+            carried=self._at(self.y, slot.carried),
         )  # fmt: skip
 
     def _at(self, vector: Any, places: range) -> list[Any]:
@@ -106,6 +109,13 @@ class Symbols:
             where = self.known[name].q
             q += slot.kind.wanted(self.here[name]) if slot.paths else where
         return outboard_inertia(self.tree, placements(self.tree, q))
+
+    @property
+    def quantities(self) -> dict[str, Any]:
+        """Angular velocity, joint coordinates and rates by name; a rate's name is its joint speed's
+        with "_rate"."""
+        names = [*VELOCITIES, *self.model.coordinates, *(f"{n}_rate" for n in self.model.speeds)]
+        return dict(zip(names, [*self.omega, *self.position, *self.rate], strict=True))
 
     # ------------------------------------------------------------------------------- the body
 
@@ -182,7 +192,7 @@ class Symbols:
 
     @cached_property
     def slope(self) -> Any:
-        """The rate of the state."""
+        """The rate of the state, but for what is carried."""
         rates = quaternion_rate(self.quaternion, self.omega)
         if not self.layout.bound:
             alpha, _, joints = self.accelerations
@@ -194,6 +204,20 @@ class Symbols:
             for joint in moving:
                 rates += joints[self.model.speed_slice(joint.name)]
         return ca.vertcat(*rates)
+
+    @cached_property
+    def tick(self) -> Any:
+        """What is carried, as it is from a tick on; None where nothing is."""
+        where, model = self.layout, self.model
+        if where.every is None:
+            return None
+        angles = nearest(self.quaternion, self._at(self.y, where.sensed), model.axes)
+        known = named(lambda *_: self.quantities, angles, self.y, self.t, self.p, model.axes)
+        noise = Noise(self._at(self.y, where.noise))
+        senses = Senses({**known, "time": self.t}, noise.normal)
+        result = list(angles)
+        own = [slot.kind.tick(self.here[slot.joint.name], senses) for slot in where.slots]
+        return ca.vertcat(*result, *noise.state, *(x for row in own for x in row))
 
     @cached_property
     def gauge(self) -> Any:

@@ -17,9 +17,9 @@ from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.dynamics import Equations
 from somersault.engine import Integrator, Kernel
-from somersault.flight._layout import Layout
+from somersault.flight._layout import Layout, Slot
 from somersault.flight._symbols import Symbols
-from somersault.flight._watch import VELOCITIES, longest, watch
+from somersault.flight._watch import longest, watch
 from somersault.flight.behaviours import JointTakeoff
 from somersault.model import FREE_IT, Model
 
@@ -84,9 +84,10 @@ class System:
         """DOP853 for these equations, with the event's gauge and what is watched."""
         s, where = self.symbols, self.layout
         slope = self._function("slope", s.slope)
+        tick = None if s.tick is None else self._function("tick", s.tick)
         gauge = None if self.event is None else self._function("gauge", s.gauge)
         if self.extremes is None:
-            return Integrator(slope, gauge, changing=where.changing)
+            return Integrator(slope, gauge, changing=where.changing, tick=tick)
         axes = self.model.axes
         return Integrator(
             slope,
@@ -94,36 +95,42 @@ class System:
             watch(self.extremes, self.quantities, where.state, where.parameters, axes),
             self._function("longest", longest(s.quaternion, s.omega, axes)),
             where.changing,
+            tick,
         )
 
-    def start(self, quaternion: Array, omega: Array, q: Array, u: Array) -> Array:
+    def start(self, quaternion: Array, omega: Array, q: Array, u: Array, sensed: Array) -> Array:
         """States from full joint coordinates and speeds, (N, state), with room behind them for
-        what is watched, (N, state + watched)."""
+        what is watched, (N, state + watched); `sensed` is what is carried of the body."""
         moving = [slot.joint.name for slot in self.layout.slots if slot.kind.in_state]
         parts = [quaternion]
         if not self.layout.bound:
             parts.append(omega)
             parts += [q[:, self.model.coordinate_slice(name)] for name in moving]
             parts += [u[:, self.model.speed_slice(name)] for name in moving]
+        if self.layout.every is not None:
+            parts += [sensed, *(self._carried(slot, q, u) for slot in self.layout.slots)]
         rows = np.empty((len(quaternion), self.integrator.outputs))
         np.concatenate(parts, 1, out=rows[:, : self.layout.state])
         return rows
+
+    def _carried(self, slot: Slot, q: Array, u: Array) -> Array:
+        coordinates, speeds = (
+            self.model.coordinate_slice(slot.joint.name), self.model.speed_slice(slot.joint.name)
+        )  # fmt: skip
+        return slot.kind.carried_at_takeoff(q[:, coordinates], u[:, speeds])
 
     # ----------------------------------------------------------- from states to quantities
 
     def quantities(self, y: Any, t: Any, p: Any) -> dict[str, Any]:
         """Angular velocity, joint coordinates and rates by name, symbolic, as functions of state,
         time and parameters; a rate's name is its joint speed's with "_rate"."""
-        model = self.model
         values = self._reading(ca.vertcat(y, t, p))
-        rates = [f"{name}_rate" for name in model.speeds]
-        names = [*VELOCITIES, *model.coordinates, *rates]
-        return {name: values[k] for k, name in enumerate(names)}
+        return {name: values[k] for k, name in enumerate(self.symbols.quantities)}
 
     @cached_property
     def _reading(self) -> ca.Function:
         s = self.symbols
-        return self._function("reading", ca.vertcat(*s.omega, *s.position, *s.rate))
+        return self._function("reading", ca.vertcat(*s.quantities.values()))
 
     def read(self, states: Array, times: Array, parameters: Array) -> tuple[Array, Array, Array]:
         """ω (N, 3), joint coordinates (N, coordinates) and speeds (N, speeds) of states (N, …)."""

@@ -42,6 +42,9 @@ class Takeoff:
     tape : sequence of float, (3,), optional
         The angular momentum (body axes, kg m²/s) at takeoff of the nominal flight whose joint
         torques are replayed to compliant joints: that of the same paths, exactly followed.
+    noise : float
+        Which noise joints with a law sense: another number gives another noise, the same number
+        the same.
     joints : mapping of str to JointTakeoff
         What each joint does; a left–right pair by its common name, with the left side's angles.
 
@@ -68,13 +71,14 @@ class Takeoff:
     position: Sequence[float] = (0.0, 0.0, 0.0)
     velocity: Sequence[float] = (0.0, 0.0, 0.0)
     tape: Sequence[float] | None = None
+    noise: float = 0.0
     joints: Mapping[str, JointTakeoff] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "joints", by_name("takeoff joints", self.joints))
         for name, joint in self.joints.items():
             instance(f"takeoff of joint {name}", joint, JointTakeoff)
-        for name in ("somersault", "tilt", "twist", "tilt_rate", "twist_rate"):
+        for name in ("somersault", "tilt", "twist", "tilt_rate", "twist_rate", "noise"):
             number(f"takeoff {name}", getattr(self, name))
         for name, turns in (("somersault", MOST_TURNS), ("tilt", 1), ("twist", MOST_TURNS)):
             note_degrees(f"takeoff {name}", getattr(self, name), turns)

@@ -14,13 +14,13 @@ from somersault.flight.behaviours import Coupled, declared
 from somersault.model import Model, sides
 from somersault.simulation import Name, Target
 
-_JOINT = re.compile(r"^joints\.(.+)\.([^\W\d]\w*)(?:\.(\d+))?$")
+_JOINT = re.compile(r"^joints\.(.+)\.([^\W\d]\w*)(?:\.(\w+))?$")
 _BODY = re.compile(r"^bodies\.(.+)\.(?:(mass)|(com|position)\.([123]))$")
 _TAKEOFF = re.compile(r"^takeoff\.(\w+)(?:\.([123]))?$")
 _VECTORS = ("angular_velocity", "angular_momentum")
 _UNITS = {
     "somersault": "rad", "tilt": "rad", "twist": "rad", "spin": "rad/s", "tilt_rate": "rad/s",
-    "twist_rate": "rad/s", "angular_velocity": "rad/s", "angular_momentum": "kg m2/s",
+    "twist_rate": "rad/s", "noise": "1", "angular_velocity": "rad/s", "angular_momentum": "kg m2/s",
 }  # fmt: skip
 
 
@@ -76,7 +76,7 @@ def _of_joint(batch: Batch, path: str, joint: str, what: str, k: str | None) -> 
     for name, (factor, offset) in both.items():
         slides = batch.model.joint(name).kind == "slide"
         every: list[Name] = [n for n in values if n[:2] == (what, name)]
-        wanted: list[Name] = [(what, name, int(k))] if k else every
+        wanted: list[Name] = [n for n in every if k in (None, *map(str, n[2:]))]
         if not wanted or any(n not in values for n in wanted):
             there = sorted(
                 {".".join(str(x) for x in (n[0], *n[2:])) for n in values if name in n[1:2]}

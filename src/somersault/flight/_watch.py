@@ -69,7 +69,7 @@ def values(
     """The quantities at one moment, of (angles, state, time, parameters)."""
     s, y, t = ca.SX.sym("s", 3), ca.SX.sym("y", state), ca.SX.sym("t")
     p = ca.SX.sym("p", parameters)
-    known = _named(quantities, [s[k] for k in range(3)], y, t, p, axes)
+    known = named(quantities, [s[k] for k in range(3)], y, t, p, axes)
     chosen = ca.vertcat(*[known[name] for name in extremes])
     return ca.Function("values", [ca.vertcat(s, y, t, p)], [ca.cse(ca.densify(chosen))])
 
@@ -90,16 +90,7 @@ def _followed(
     `angles`, those before it, are carried; slopes are those of the ends, times the step."""
     (start, start_down), (end, end_down) = (_spun(quaternion, axes) for quaternion in ends)
     (leaving, leaving_down), (arriving, arriving_down) = (_spun(slope, axes) for slope in slopes)
-    half_sum, half_difference = ca.atan2(end_down[1], end_down[0]), ca.atan2(end[1], end[0])
-    plus = ca.sqrt(end[0] ** 2 + end[1] ** 2)
-    minus = ca.sqrt(end_down[0] ** 2 + end_down[1] ** 2)
-    tilt = 2 * ca.atan2(plus - minus, plus + minus)
-    # Half the sum is free at tilt π/2, half the difference at −π/2: there each stays as it was.
-    sum_was, difference_was = ((side(axes) * angles[0] + k * angles[2]) / 2 for k in (1, -1))
-    half_sum = _chosen(2 * minus < SINGULAR * plus, sum_was, half_sum)
-    half_difference = _chosen(2 * plus < SINGULAR * minus, difference_was, half_difference)
-    here = [side(axes) * (half_sum + half_difference), tilt, half_sum - half_difference]
-    there = [here[0] + np.pi, np.pi - tilt, here[2] + np.pi]
+    here, plus, minus = _read(angles, end, end_down, axes)
     up = minus < plus
     short = [
         _chosen(up, down, other)
@@ -110,6 +101,34 @@ def _followed(
     ]  # fmt: skip
     past = _PAST * _sense_past(*short)
     carried = [angles[0] + side(axes) * past, angles[1], angles[2] + (2 * up - 1) * past]
+    return _closest(here, carried)
+
+
+def nearest(quaternion: list[Any], angles: list[Any], axes: Axes) -> list[Any]:
+    """Somersault, tilt and twist of an attitude, in the representation nearest to `angles`."""
+    here, _, _ = _read(angles, *_spun(quaternion, axes), axes)
+    return _closest(here, angles)
+
+
+def _read(angles: list[Any], end: Any, end_down: Any, axes: Axes) -> tuple[list[Any], Any, Any]:
+    """Angles of the attitude of two such vectors as `_spun` gives, and their lengths; what is free
+    at tilt ±π/2 is as in `angles`."""
+    half_sum, half_difference = ca.atan2(end_down[1], end_down[0]), ca.atan2(end[1], end[0])
+    plus = ca.sqrt(end[0] ** 2 + end[1] ** 2)
+    minus = ca.sqrt(end_down[0] ** 2 + end_down[1] ** 2)
+    tilt = 2 * ca.atan2(plus - minus, plus + minus)
+    # Half the sum is free at tilt π/2, half the difference at −π/2: there each stays as it was.
+    sum_was, difference_was = ((side(axes) * angles[0] + k * angles[2]) / 2 for k in (1, -1))
+    half_sum = _chosen(2 * minus < SINGULAR * plus, sum_was, half_sum)
+    half_difference = _chosen(2 * plus < SINGULAR * minus, difference_was, half_difference)
+    here = [side(axes) * (half_sum + half_difference), tilt, half_sum - half_difference]
+    return here, plus, minus
+
+
+def _closest(here: list[Any], carried: list[Any]) -> list[Any]:
+    """Angles `here` or their other representation, with the whole turns that bring either nearest
+    to what is `carried`."""
+    there = [here[0] + np.pi, np.pi - here[1], here[2] + np.pi]
     by = [_wrapped(a - b) for a, b in zip(here, carried, strict=True)]
     other = [_wrapped(a - b) for a, b in zip(there, carried, strict=True)]
     crosses = sum(d * d for d in other) < sum(d * d for d in by)
@@ -147,9 +166,11 @@ def _wrapped(angle: Any) -> Any:
     return angle - 2 * np.pi * ca.floor(angle / (2 * np.pi) + 0.5)
 
 
-def _named(
+def named(
     quantities: Quantities, angles: list[Any], y: Any, t: Any, p: Any, axes: Axes
 ) -> dict[str, Any]:
+    """All quantities by name, with the angles and their rates, at a state where the angles are
+    these."""
     _, tilt, twist = angles
     known = quantities(y, t, p)
     w1, w2, w3 = in_sequence([known[name] for name in VELOCITIES], axes)
@@ -178,7 +199,7 @@ def _with_rates(
 ) -> tuple[list[Any], list[Any]]:
     """Quantities and their time derivatives, at a state whose slope is f."""
     s, yy, tt = ca.SX.sym("s", 3), ca.SX.sym("yy", y.numel()), ca.SX.sym("tt")
-    known = _named(quantities, [s[k] for k in range(3)], yy, tt, p, axes)
+    known = named(quantities, [s[k] for k in range(3)], yy, tt, p, axes)
     chosen = ca.vertcat(*[known[name] for name in names])
     direction = ca.vertcat(*[known[name] for name in RATES], f, 1.0)
     point = ca.vertcat(s, yy, tt)

@@ -17,7 +17,7 @@ from somersault._core.array import Array
 from somersault._core.checks import truth
 from somersault._core.errors import SomersaultError
 from somersault.flight.behaviours import _changed, _declared
-from somersault.flight.behaviours._here import Here, Known
+from somersault.flight.behaviours._here import Here, Known, Senses
 from somersault.flight.behaviours._limits import within
 from somersault.flight.behaviours._registry import Registry, behaviour_names
 from somersault.model import Joint, Model
@@ -44,6 +44,9 @@ class JointTakeoff(metaclass=Registry):
     | compliant  | has a spring and a damper about a path, and a motor tape         |
     | torque     | is driven by a torque against time; may have spring and damper   |
     | coupled    | follows another joint, as gears make it                          |
+    | torque_law | has a torque by a law of what is sensed; may have a spring       |
+    | rate_law   | moves at a rate by a law, whatever it takes                      |
+    | angle_law  | moves to an angle by a law, whatever it takes                    |
 
     Without a name a joint does what the model says: it follows where it is geared to another,
     is sprung where it has stiffness or is given some, and is locked otherwise. Angles are in rad (m
@@ -269,6 +272,79 @@ class JointTakeoff(metaclass=Registry):
         """
         return here.q
 
+    def accelerations(self, here: Here) -> list[Any]:
+        """Its accelerations, of a joint that is part of the state and yet does not move freely.
+
+        Parameters
+        ----------
+        here : Here
+
+        Returns
+        -------
+        list
+            One for each of its speeds, or none where they follow from what acts.
+        """
+        return []
+
+    # ----------------------------------------------------------------- what it does at ticks
+
+    def sampling(self) -> float | None:
+        """The time between the ticks at which it senses.
+
+        Returns
+        -------
+        float or None
+            s; None for a joint that does not.
+        """
+        return None
+
+    def carried(self) -> int:
+        """How many numbers it carries from tick to tick.
+
+        Returns
+        -------
+        int
+        """
+        return 0
+
+    def carried_at_takeoff(self, q: Array, u: Array) -> Array:
+        """What it carries before the first tick, which is at takeoff.
+
+        Parameters
+        ----------
+        q : ndarray, (count, coordinates)
+        u : ndarray, (count, speeds)
+            Its own, at takeoff.
+
+        Returns
+        -------
+        ndarray, (count, carried)
+        """
+        return np.zeros((len(q), self.carried()))
+
+    def is_noisy(self) -> bool:
+        """Whether it senses with noise.
+
+        Returns
+        -------
+        bool
+        """
+        return False
+
+    def tick(self, here: Here, senses: Senses) -> list[Any]:
+        """What it carries from a tick on.
+
+        Parameters
+        ----------
+        here : Here
+        senses : Senses
+
+        Returns
+        -------
+        list
+        """
+        return []
+
     # -------------------------------------------------------------------------- its numbers
 
     def numbers(self, joint: Joint) -> dict[Name, float | Array]:
@@ -320,7 +396,7 @@ class JointTakeoff(metaclass=Registry):
         -------
         ndarray, (count, parameters)
         """
-        names: list[Name] = [(name, joint.name) for name in self.parameters(joint)]
+        names = [_declared.named(joint.name, name) for name in self.parameters(joint)]
         return _declared.side_by_side(values, names, len(q))
 
     def paths(self, joint: Joint, values: Numbers, count: int) -> tuple[Path, ...]:

@@ -6,12 +6,14 @@ ensemble may vary and their units.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, Literal
 
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.checks import by_name
 from somersault._core.degrees import note_degrees
 from somersault._core.notes import note
 from somersault._core.numbers import number, numbers
@@ -22,15 +24,22 @@ _KEY = "quantity"
 Image = Literal["same", "turned", "angle"]
 
 
+class Table(dict[str, float]):
+    """Numbers by name, which do not change."""
+
+    def __hash__(self) -> int:  # type: ignore[override]
+        return hash(tuple(self.items()))
+
+
 @dataclass(frozen=True)
 class Quantity:
     """What is known of a number, or of a row of them.
 
     `unit` of a hinge, `slide_unit` of a slide. `image` says what the mirrored joint gets: the
     "same" number, one "turned" over with the joint's rate, or an "angle" about the pose in which
-    the file draws the joint. `least` is the smallest that makes sense,
-    and what is below `usual` is noted. A `limited` one must be
-    within the joint's limits at takeoff.
+    the file draws the joint. A `row` has several, a `table` several by name. `least` is the
+    smallest that makes sense, and what is below `usual` is noted. A `limited` one must be within
+    the joint's limits at takeoff.
     """
 
     unit: str
@@ -40,6 +49,7 @@ class Quantity:
     least: float | None = None
     limited: bool = False
     usual: float | None = None
+    table: bool = False
 
 
 def quantity(
@@ -52,6 +62,7 @@ def quantity(
     least: float | None = None,
     limited: bool = False,
     usual: float | None = None,
+    table: bool = False,
     kw_only: bool = True,
 ) -> Any:
     """Declare a field that is a number, or a row of numbers.
@@ -67,6 +78,7 @@ def quantity(
     least : float, optional
     limited : bool
     usual : float, optional
+    table : bool
         As in `Quantity`.
     kw_only : bool
         Whether it is given by name only.
@@ -75,7 +87,7 @@ def quantity(
     -------
     dataclasses.Field
     """
-    declared = Quantity(unit, slide_unit or unit, image, row, least, limited, usual)
+    declared = Quantity(unit, slide_unit or unit, image, row, least, limited, usual, table)
     return field(default=default, kw_only=kw_only, metadata={_KEY: declared})
 
 
@@ -134,6 +146,9 @@ def checked(where: str, joint: Joint, name: str, what: Quantity, value: Any) -> 
     label = f"{where}: {name}"
     if value is None:
         return None
+    if what.table:
+        given = by_name(label, value)
+        return Table((key, number(f"{label}.{key}", x)) for key, x in given.items())
     if what.row:
         return tuple(numbers(label, value).tolist())
     if joint.kind == "ball" and name in ("angle", "rate"):
@@ -157,9 +172,18 @@ def spread(joint: str, name: str, value: Any) -> dict[Name, float]:
     """A quantity's numbers by name: (quantity, joint), or with a place from 1 for one of a row."""
     if value is None:
         return {}
+    if isinstance(value, Mapping):
+        return {(name, joint, key): x for key, x in value.items()}
     if isinstance(value, tuple):
         return {(name, joint, k + 1): x for k, x in enumerate(value)}
     return {(name, joint): value}
+
+
+def named(joint: str, parameter: str) -> Name:
+    """The name of the number that a parameter of a joint's equations is: "gains.k" is one of a
+    table."""
+    what, _, key = parameter.partition(".")
+    return (what, joint, key) if key else (what, joint)
 
 
 def side_by_side(values: Numbers, names: list[Name], count: int) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -16,7 +16,8 @@ class Here:
     `q` and `u` are its coordinates and speeds, `numbers` its parameters by name, `paths` the
     value, rate and acceleration of each of its paths now. `outboard` gives, for each of its speeds,
     the inertia about its axis of all that is outboard, in the pose in which the paths have the
-    body. `tape` is the motor tape's torque. `leader` is the joint that it follows.
+    body. `tape` is the motor tape's torque. `leader` is the joint that it follows. `carried` are
+    the numbers that it carries from tick to tick.
     """
 
     joint: Joint
@@ -28,6 +29,7 @@ class Here:
     outboard: Callable[[], list[Any]]
     tape: Any = 0.0
     leader: Known | None = None
+    carried: Sequence[Any] = ()
 
     def at(self, known: Known) -> Here:
         """The same with other coordinates: those of a joint that is no part of the state.
@@ -63,3 +65,14 @@ class Known:
     q: list[Any]
     u: list[Any]
     a: list[Any]
+
+
+@dataclass(frozen=True)
+class Senses:
+    """What is sensed of the body at a tick.
+
+    `known` are the quantities by name; `normal` gives a normal deviate, another one each time.
+    """
+
+    known: Mapping[str, Any]
+    normal: Callable[[], Any]
