@@ -14,7 +14,8 @@ from somersault.flight.behaviours import Coupled, declared
 from somersault.model import Model, sides
 from somersault.simulation import Name, Target
 
-_JOINT = re.compile(r"^joints\.(.+)\.([^\W\d]\w*)(?:\.(\w+))?$")
+_JOINT = re.compile(r"^joints\.(.+)\.([^\W\d]\w*)(?:\.(\d+))?$")
+_OF_TABLE = re.compile(r"^joints\.(.+)\.([^\W\d]\w*)\.(\w+)$")
 _BODY = re.compile(r"^bodies\.(.+)\.(?:(mass)|(com|position)\.([123]))$")
 _TAKEOFF = re.compile(r"^takeoff\.(\w+)(?:\.([123]))?$")
 _VECTORS = ("angular_velocity", "angular_momentum")
@@ -35,7 +36,10 @@ def targets(batch: Batch, path: str) -> tuple[Target, ...]:
     text("the name of a number", path)
     if match := _TAKEOFF.match(path):
         return _of_takeoff(batch, path, *match.groups())
-    if match := _JOINT.match(path):
+    match = _OF_TABLE.match(path)
+    if not (match and _is_joint(batch.model, match[1])):  # whose name may have dots
+        match = _JOINT.match(path)
+    if match:
         return _of_joint(batch, path, *match.groups())
     if match := _BODY.match(path):
         return _of_body(batch.model, *match.groups())
@@ -67,6 +71,11 @@ def _of_takeoff(batch: Batch, path: str, what: str, k: str | None) -> tuple[Targ
 def _spelled(name: Name) -> str:
     parts = name if name[0] == "takeoff" else ("takeoff", *name)
     return ".".join(str(part) for part in parts)
+
+
+def _is_joint(model: Model, name: str) -> bool:
+    """Whether it is the name of a joint, or the common one of a pair."""
+    return name in model.speeds or next(iter(sides(model, name))) != name
 
 
 def _of_joint(batch: Batch, path: str, joint: str, what: str, k: str | None) -> tuple[Target, ...]:

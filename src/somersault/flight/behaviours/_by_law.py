@@ -10,7 +10,6 @@ import casadi as ca
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import text
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 from somersault.flight.behaviours import _declared
@@ -49,8 +48,6 @@ class ByLaw(JointTakeoff):
         where = f"joint {joint.name}"
         if joint.coordinates != 1:
             raise SomersaultError(f"{where} is a {joint.kind}, which takes no law; give it hinges")
-        if not text(f"{where}: law", self.law).strip():
-            raise SomersaultError(f"{where} has no law; give one, like law = '-k * twist'")
         plan = super().settled(joint)
         assert isinstance(plan, ByLaw)
         every, delay = (number(f"{where}: {n}", getattr(self, n)) for n in ("every", "delay"))
@@ -162,8 +159,8 @@ class ByLaw(JointTakeoff):
 
 
 def bounded(value: Any, most: Any) -> Any:
-    """A number that is not beyond ±most."""
-    return ca.fmax(ca.fmin(value, most), -most)
+    """A number that is not beyond ±most; one that is none stays so."""
+    return ca.if_else(value > most, most, ca.if_else(value < -most, -most, value))
 
 
 def _check_times(where: str, every: float, delay: float) -> None:
