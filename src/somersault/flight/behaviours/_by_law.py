@@ -79,8 +79,8 @@ class ByLaw(JointTakeoff):
         raise SomersaultError("a law senses what was, so it does not run backwards")
 
     def kind(self) -> Any:
-        tables = {n: _declared.Table.fromkeys(getattr(self, n), 0.0) for n in ("gains", "noise")}
-        return replace(super().kind(), **tables)
+        gains, noise = ({name: 0.0 for name in table} for table in (self.gains, self.noise))
+        return replace(super().kind(), gains=_declared.Table(gains), noise=_declared.Table(noise))
 
     def parameters(self, joint: Joint) -> tuple[str, ...]:
         tables = {"gains": self.gains, "noise": self.noise}
