@@ -8,6 +8,8 @@ from somersault.stability._chart import (
     stable_ranges_by_case,
 )
 from somersault.stability._coordinates import locked_speeds
+from somersault.stability._delay import DelayedFeedback
+from somersault.stability._feedback import feedback
 from somersault.stability._joint_roots import joint_roots
 from somersault.stability._modes import Mode
 from somersault.stability._principal import PrincipalAxes, principal_axes
@@ -16,11 +18,13 @@ from somersault.stability._steady import holding_torques
 from somersault.stability._types import LinearSpin, Spin
 
 __all__ = [
+    "DelayedFeedback",
     "LinearSpin",
     "Mode",
     "PrincipalAxes",
     "Spin",
     "chart",
+    "feedback",
     "growth_rates",
     "holding_torques",
     "joint_roots",

@@ -79,7 +79,7 @@ class ByLaw(JointTakeoff):
         raise SomersaultError("a law senses what was, so it does not run backwards")
 
     def kind(self) -> Any:
-        gains, noise = ({name: 0.0 for name in table} for table in (self.gains, self.noise))
+        gains, noise = (dict.fromkeys(table, 0.0) for table in (self.gains, self.noise))
         return replace(super().kind(), gains=_declared.Table(gains), noise=_declared.Table(noise))
 
     def parameters(self, joint: Joint) -> tuple[str, ...]:
