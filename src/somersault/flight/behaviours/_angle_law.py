@@ -20,8 +20,7 @@ class AngleLaw(Driven, motion="angle_law"):
         return q[:, 0]
 
     def rate_for(self, here: Here, command: Any) -> Any:
-        # So that it stands there after two ticks, where nothing bounds it.
-        return (command - here.q[0]) / self.every - here.u[0] / 2
+        return self.rate_towards(here, command)
 
     def mirrored(self, model: Model, name: str, factor: float, offset: float) -> Any:
         plan = super().mirrored(model, name, factor, offset)

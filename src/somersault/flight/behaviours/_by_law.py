@@ -160,7 +160,12 @@ class ByLaw(JointTakeoff):
 
 def bounded(value: Any, most: Any) -> Any:
     """A number that is not beyond ±most; one that is none stays so."""
-    return ca.if_else(value > most, most, ca.if_else(value < -most, -most, value))
+    return between(value, -most, most)
+
+
+def between(value: Any, low: Any, high: Any) -> Any:
+    """A number that is not below `low` nor above `high`; one that is none stays so."""
+    return ca.if_else(value > high, high, ca.if_else(value < low, low, value))
 
 
 def _check_times(where: str, every: float, delay: float) -> None:

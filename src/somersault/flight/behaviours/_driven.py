@@ -9,7 +9,7 @@ from somersault._core.array import Array
 from somersault._core.numbers import MOST
 from somersault.flight.behaviours import _declared
 from somersault.flight.behaviours._behaviour import Angle, JointTakeoff
-from somersault.flight.behaviours._by_law import ByLaw, bounded
+from somersault.flight.behaviours._by_law import ByLaw, between, bounded
 from somersault.flight.behaviours._here import Here
 from somersault.flight.behaviours._moving import standing, takeoff_angle
 from somersault.model import Joint
@@ -21,7 +21,7 @@ class Driven(ByLaw):
     """A joint that starts from an `angle` (rad, m) at a `rate` and moves as its law commands.
 
     Between two ticks its acceleration is constant: the one that brings it to the commanded rate by
-    the next tick, as far as `most_rate` and `most_acceleration` allow.
+    the next tick, as far as `most_rate`, the joint's limits and `most_acceleration` allow.
     """
 
     in_state: ClassVar[bool] = True
@@ -46,6 +46,9 @@ class Driven(ByLaw):
 
     def acted_on(self, here: Here, command: Any) -> Any:
         wanted = bounded(self.rate_for(here, command), here.numbers["most_rate"])
+        if here.joint.limits is not None:
+            low, high = (self.rate_towards(here, limit) for limit in here.joint.limits)
+            wanted = between(wanted, low, high)
         return bounded((wanted - here.u[0]) / self.every, here.numbers["most_acceleration"])
 
     def rate_for(self, here: Here, command: Any) -> Any:
@@ -62,3 +65,17 @@ class Driven(ByLaw):
         casadi.SX
         """
         raise NotImplementedError
+
+    def rate_towards(self, here: Here, angle: Any) -> Any:
+        """The rate with which it stands at an angle after two ticks, where nothing bounds it.
+
+        Parameters
+        ----------
+        here : Here
+        angle : casadi.SX or float
+
+        Returns
+        -------
+        casadi.SX
+        """
+        return (angle - here.q[0]) / self.every - here.u[0] / 2

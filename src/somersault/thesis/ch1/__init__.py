@@ -1,4 +1,5 @@
-"""Chapter 1, the introduction: three techniques in the air, and a compliant twisting somersault."""
+"""Chapter 1, the introduction: three techniques in the air, a compliant twisting somersault, and an
+active layout."""
 
 from functools import partial
 
@@ -14,5 +15,6 @@ CHAPTER = Chapter(
         _entry(
             "fig1-4", "Figure 1-4: a twisting somersault by torques alone", "_open_loop.fig_1_4"
         ),
+        _entry("sec1-1", "§1.1.1: a layout that the arms hold", "_stabiliser.stabiliser"),
     ),
 )
