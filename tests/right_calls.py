@@ -19,6 +19,7 @@ from somersault import (
     attitude,
     ensembles,
     flight,
+    laws,
     model,
     motion,
     rigid,
@@ -46,6 +47,10 @@ TAKEOFF = so.Takeoff(spin=5.0)
 @cache
 def furrer() -> so.Model:
     return so.load("furrer")
+
+
+def fed() -> st.DelayedFeedback:
+    return st.feedback(spun().linear(), "antisymmetric shoulder", "rate", {"twist": -1.0})
 
 
 @cache
@@ -289,6 +294,32 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     "stability.stable_ranges_by_case": lambda: (
         st.stable_ranges_by_case,
         RANGES | {"pose": {"shoulder": [1.0, 1.3]}},
+    ),
+    "stability.feedback": lambda: (
+        st.feedback,
+        {
+            "spin": spun().linear(),
+            "coordinate": "antisymmetric shoulder",
+            "commands": "rate",
+            "gains": {"twist": -1.0},
+        },
+    ),
+    "stability.DelayedFeedback": lambda: (
+        st.DelayedFeedback,
+        {"matrix": np.eye(2), "drive": np.ones(2), "sensed": np.ones(2), "direct": 0.0},
+    ),
+    "stability.DelayedFeedback.roots": lambda: (fed().roots, {"delay": 0.1, "count": 3}),
+    "stability.DelayedFeedback.growth_rate": lambda: (fed().growth_rate, {"delay": 0.1}),
+    "stability.DelayedFeedback.stable_delays": lambda: (fed().stable_delays, {"most": 3.0}),
+    # --- laws
+    "laws.Formula": lambda: (laws.Formula, {"text": "k * twist"}),
+    "laws.Formula.value": lambda: (
+        laws.Formula("k * twist").value,
+        {"known": {"k": 1.0, "twist": 0.1}},
+    ),
+    "laws.Formula.renamed": lambda: (
+        laws.Formula("k * twist").renamed,
+        {"names": {"twist": "tilt"}, "sign": -1.0},
     ),
     "stability.joint_roots": lambda: (
         st.joint_roots,

@@ -19,6 +19,9 @@ from . import (
     history as history,
 )
 from . import (
+    laws as laws,
+)
+from . import (
     model as model,
 )
 from . import (

@@ -78,7 +78,7 @@ def layout(
     moved = u + sum(joint.speeds for joint in moving)
     every = _every(pairs)
     sensed = range(moved, moved + (ANGLES if every else 0))
-    noisy = any(kind.is_noisy() for kind in kinds)
+    noisy = any(kind.sensing and kind.sensing.noisy for kind in kinds)
     noise = range(sensed.stop, sensed.stop + (NOISE if noisy else 0))
     carried = noise.stop
     path, origin = 0, PATH * sum(kind.path_count for kind in kinds)
@@ -92,7 +92,7 @@ def layout(
         n_p = len(kind.parameters(joint))
         n_t = TAPED if tape and is_taped(kind) else 0
         paths = tuple(range(path + PATH * k, path + PATH * (k + 1)) for k in range(kind.path_count))
-        n_c = kind.carried()
+        n_c = kind.sensing.carried if kind.sensing else 0
         slot = Slot(
             joint, kind, range(q, q + n_q), range(u, u + n_u), range(carried, carried + n_c), paths,
             range(lasting, lasting + n_p), range(taped, taped + n_t),
@@ -109,15 +109,17 @@ def layout(
 
 def _every(pairs: list[tuple[Joint, JointTakeoff]]) -> float | None:
     """The time between the ticks of all laws, s; SomersaultError where they differ."""
-    every = None
+    every: float | None = None
     for joint, kind in pairs:
-        one = kind.sampling()
-        if None not in (one, every) and one != every:
+        if kind.sensing is None:
+            continue
+        one = kind.sensing.every
+        if every not in (None, one):
             raise SomersaultError(
                 f"joint {joint.name} senses every {one:g} s, and another one every {every:g} s; "
                 "the laws of a flight have the same ticks, so give them the same time"
             )
-        every = every if one is None else one
+        every = one
     return every
 
 

@@ -60,7 +60,7 @@ def numbers(takeoff: Takeoff, settled: tuple[JointPlan, ...]) -> dict[Name, floa
     if takeoff.angular_velocity is None and takeoff.angular_momentum is None:
         result["takeoff", "spin"] = 0.0 if takeoff.spin is None else takeoff.spin
         result |= {("takeoff", n): getattr(takeoff, n) for n in ("tilt_rate", "twist_rate")}
-    if any(plan.does.is_noisy() for plan in settled):
+    if any(plan.does.sensing and plan.does.sensing.noisy for plan in settled):
         result["takeoff", "noise"] = takeoff.noise
     for plan in settled:
         result |= plan.does.numbers(plan.joint)

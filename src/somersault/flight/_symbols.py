@@ -215,9 +215,11 @@ class Symbols:
         known = named(lambda *_: self.quantities, angles, self.y, self.t, self.p, model.axes)
         noise = Noise(self._at(self.y, where.noise))
         senses = Senses({**known, "time": self.t}, noise.normal)
-        result = list(angles)
-        own = [slot.kind.tick(self.here[slot.joint.name], senses) for slot in where.slots]
-        return ca.vertcat(*result, *noise.state, *(x for row in own for x in row))
+        own: list[Any] = []
+        for slot in where.slots:
+            if slot.kind.sensing is not None:
+                own += slot.kind.sensing.tick(self.here[slot.joint.name], senses)
+        return ca.vertcat(*angles, *noise.state, *own)
 
     @cached_property
     def gauge(self) -> Any:

@@ -7,6 +7,7 @@ differ only in numbers share one compiled right-hand side.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -17,7 +18,7 @@ from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.dynamics import Equations
 from somersault.engine import Integrator, Kernel
-from somersault.flight._layout import Layout, Slot
+from somersault.flight._layout import Layout
 from somersault.flight._symbols import Symbols
 from somersault.flight._watch import longest, watch
 from somersault.flight.behaviours import JointTakeoff
@@ -108,16 +109,17 @@ class System:
             parts += [q[:, self.model.coordinate_slice(name)] for name in moving]
             parts += [u[:, self.model.speed_slice(name)] for name in moving]
         if self.layout.every is not None:
-            parts += [sensed, *(self._carried(slot, q, u) for slot in self.layout.slots)]
+            parts += [sensed, *self._carried(q, u)]
         rows = np.empty((len(quaternion), self.integrator.outputs))
         np.concatenate(parts, 1, out=rows[:, : self.layout.state])
         return rows
 
-    def _carried(self, slot: Slot, q: Array, u: Array) -> Array:
-        coordinates, speeds = (
-            self.model.coordinate_slice(slot.joint.name), self.model.speed_slice(slot.joint.name)
-        )  # fmt: skip
-        return slot.kind.carried_at_takeoff(q[:, coordinates], u[:, speeds])
+    def _carried(self, q: Array, u: Array) -> Iterator[Array]:
+        for slot in self.layout.slots:
+            if slot.kind.sensing is not None:
+                name = slot.joint.name
+                its_q, its_u = self.model.coordinate_slice(name), self.model.speed_slice(name)
+                yield slot.kind.sensing.at_takeoff(q[:, its_q], u[:, its_u])
 
     # ----------------------------------------------------------- from states to quantities
 

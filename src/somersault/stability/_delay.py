@@ -84,8 +84,8 @@ class DelayedFeedback:
         >>> import numpy as np
         >>> from somersault.stability import DelayedFeedback
         >>> one = np.ones((1, 1))
-        >>> DelayedFeedback(0 * one, one[0], -np.pi / 2 * one[0]).roots(1.0, 2).round(6)
-        array([0.+1.570796j, 0.-1.570796j])
+        >>> DelayedFeedback(0 * one, one[0], -np.pi / 2 * one[0]).roots(1.0, 2).imag.round(6)
+        array([ 1.570796, -1.570796])
         """
         delay, count = _delay(delay), whole_number("count", count, 1, _MOST_ROOTS)
         p, q = self.polynomials
@@ -111,6 +111,14 @@ class DelayedFeedback:
         -------
         float
             In units of Ω.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from somersault.stability import DelayedFeedback
+        >>> one = np.ones((1, 1))
+        >>> round(DelayedFeedback(0 * one, one[0], -2 * one[0]).growth_rate(1.0), 6)
+        0.172816
         """
         return float(self.roots(delay, 1)[0].real)
 
@@ -161,9 +169,9 @@ class DelayedFeedback:
         p, q = self.polynomials
         found = []
         for omega, sense in _frequencies(p, q):
-            angle = -np.angle(np.polyval(p, 1j * omega) / np.polyval(q, 1j * omega))
+            angle = -float(np.angle(np.polyval(p, 1j * omega) / np.polyval(q, 1j * omega)))
             first = (angle % (2 * np.pi)) / omega
-            count = int(max(np.floor((most - first) * omega / (2 * np.pi)) + 1, 0))
+            count = max(int((most - first) * omega / (2 * np.pi) + 1), 0)
             if count > _MOST_CROSSINGS:
                 raise SomersaultError(f"a delay of {most:g} is too long to look at; shorten it")
             found += [(first + 2 * np.pi * k / omega, 2 * sense) for k in range(count)]

@@ -124,14 +124,14 @@ def _rate(of: _Parts) -> DelayedFeedback:
     of.require_alone("rate")
     drive = of.from_rates[:, 0] * of.sizes[of.moves]
     return DelayedFeedback(
-        of.from_x, drive, of.angles + of.rates @ of.from_x, _clean(of.rates @ drive)
+        of.from_x, drive, of.angles + of.rates @ of.from_x, _clean(float(of.rates @ drive))
     )
 
 
 def _angle(of: _Parts) -> DelayedFeedback:
     """With z = x − W a the rate of the angle a is no part of the equations: ż = V (z + W a)."""
     of.require_alone("angle")
-    if of.rates[of.moves] or _clean(of.rates @ of.from_rates[:, 0]):
+    if of.rates[of.moves] or _clean(float(of.rates @ of.from_rates[:, 0])):
         raise SomersaultError(
             "an angle is not commanded by a rate that follows that of the angle itself; command "
             "the rate, or sense something else"
@@ -142,12 +142,12 @@ def _angle(of: _Parts) -> DelayedFeedback:
     whole: Array = v[:, turns]
     drive = v @ column
     sensed_x: Any = of.angles + of.rates[turns] @ v
-    return DelayedFeedback(whole, drive, sensed_x[turns], _clean(sensed_x @ column))
+    return DelayedFeedback(whole, drive, sensed_x[turns], _clean(float(sensed_x @ column)))
 
 
 def _clean(value: float) -> float:
     """Without what rounding leaves where there is nothing."""
-    return float(value) if abs(value) > 1e-12 else 0.0
+    return value if abs(value) > 1e-12 else 0.0
 
 
 _COMMANDED = {"torque": _torque, "rate": _rate, "angle": _angle}

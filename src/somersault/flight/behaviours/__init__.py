@@ -9,12 +9,13 @@ from somersault.flight.behaviours._compliant import Compliant, softened
 from somersault.flight.behaviours._coupled import Coupled, check_coupled, leaders
 from somersault.flight.behaviours._declared import declared, quantity, side_by_side
 from somersault.flight.behaviours._free import Free
-from somersault.flight.behaviours._here import Here, Known, Senses
+from somersault.flight.behaviours._here import Here, Known
 from somersault.flight.behaviours._locked import Locked
 from somersault.flight.behaviours._moving import Moving, Stopped
 from somersault.flight.behaviours._plan import JointPlan, kinds
 from somersault.flight.behaviours._prescribed import OnPath, Prescribed
 from somersault.flight.behaviours._rate_law import RateLaw
+from somersault.flight.behaviours._sensing import Senses, Sensing
 from somersault.flight.behaviours._sprung import NON_DIMENSIONAL, Sprung
 from somersault.flight.behaviours._torque import Torque
 from somersault.flight.behaviours._torque_law import TorqueLaw
@@ -38,6 +39,7 @@ __all__ = [
     "Prescribed",
     "RateLaw",
     "Senses",
+    "Sensing",
     "Sprung",
     "Stopped",
     "Torque",

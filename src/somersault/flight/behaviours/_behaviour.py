@@ -11,15 +11,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
-import numpy as np
-
 from somersault._core.array import Array
 from somersault._core.checks import truth
 from somersault._core.errors import SomersaultError
 from somersault.flight.behaviours import _changed, _declared
-from somersault.flight.behaviours._here import Here, Known, Senses
-from somersault.flight.behaviours._limits import within
+from somersault.flight.behaviours._here import Here, Known
 from somersault.flight.behaviours._registry import Registry, behaviour_names
+from somersault.flight.behaviours._sensing import Sensing
 from somersault.model import Joint, Model
 from somersault.motion import Path
 from somersault.simulation import Name, Numbers
@@ -44,9 +42,7 @@ class JointTakeoff(metaclass=Registry):
     | compliant  | has a spring and a damper about a path, and a motor tape         |
     | torque     | is driven by a torque against time; may have spring and damper   |
     | coupled    | follows another joint, as gears make it                          |
-    | torque_law | has a torque by a law of what is sensed; may have a spring       |
-    | rate_law   | moves at a rate by a law, whatever it takes                      |
-    | angle_law  | moves to an angle by a law, whatever it takes                    |
+    | torque_law | has a torque by a law of what is sensed; rate_law, angle_law too |
 
     Without a name a joint does what the model says: it follows where it is geared to another,
     is sprung where it has stiffness or is given some, and is locked otherwise. Angles are in rad (m
@@ -92,8 +88,6 @@ class JointTakeoff(metaclass=Registry):
         bool
         """
         return self.motion in behaviour_names()
-
-    # -------------------------------------------------------------- from what was asked for
 
     def settled(self, joint: Joint) -> JointTakeoff:
         """The same with all that it leaves open filled in from the model.
@@ -207,8 +201,6 @@ class JointTakeoff(metaclass=Registry):
         """
         return replace(self, **_changed.reversed_(self, end))
 
-    # --------------------------------------------------------------- what decides equations
-
     def kind(self: Self) -> Self:
         """The same without its numbers: joints of one kind share their equations.
 
@@ -286,66 +278,10 @@ class JointTakeoff(metaclass=Registry):
         """
         return []
 
-    # ----------------------------------------------------------------- what it does at ticks
-
-    def sampling(self) -> float | None:
-        """The time between the ticks at which it senses.
-
-        Returns
-        -------
-        float or None
-            s; None for a joint that does not.
-        """
+    @property
+    def sensing(self) -> Sensing | None:
+        """What it does at ticks; None for a joint that does not sense."""
         return None
-
-    def carried(self) -> int:
-        """How many numbers it carries from tick to tick.
-
-        Returns
-        -------
-        int
-        """
-        return 0
-
-    def carried_at_takeoff(self, q: Array, u: Array) -> Array:
-        """What it carries before the first tick, which is at takeoff.
-
-        Parameters
-        ----------
-        q : ndarray, (count, coordinates)
-        u : ndarray, (count, speeds)
-            Its own, at takeoff.
-
-        Returns
-        -------
-        ndarray, (count, carried)
-        """
-        return np.zeros((len(q), self.carried()))
-
-    def is_noisy(self) -> bool:
-        """Whether it senses with noise.
-
-        Returns
-        -------
-        bool
-        """
-        return False
-
-    def tick(self, here: Here, senses: Senses) -> list[Any]:
-        """What it carries from a tick on.
-
-        Parameters
-        ----------
-        here : Here
-        senses : Senses
-
-        Returns
-        -------
-        list
-        """
-        return []
-
-    # -------------------------------------------------------------------------- its numbers
 
     def numbers(self, joint: Joint) -> dict[Name, float | Array]:
         """The numbers that may differ between flights.
@@ -426,17 +362,7 @@ class JointTakeoff(metaclass=Registry):
         -------
         ndarray of bool, (count,)
         """
-        good = np.ones(count, bool)
-        known = _declared.declared(self)
-        for key in self.numbers(joint):
-            what, value = known[str(key[0])], np.asarray(values[key])
-            if what.limited and joint.kind != "ball":
-                good &= within(joint, value)
-            if what.least is not None:
-                good &= value >= what.least
-        return good
-
-    # ---------------------------------------------------------------------- what it amounts to
+        return _declared.sound(joint, _declared.declared(self), self.numbers(joint), values, count)
 
     def nominal(self) -> JointTakeoff:
         """What it does in the flight whose torques a motor tape records.

@@ -14,7 +14,8 @@ from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 from somersault.flight.behaviours import _declared
 from somersault.flight.behaviours._behaviour import JointTakeoff
-from somersault.flight.behaviours._here import Here, Senses
+from somersault.flight.behaviours._here import Here
+from somersault.flight.behaviours._sensing import Senses, Sensing
 from somersault.laws import Formula, mirrored, mirrored_name
 from somersault.model import Joint, Model
 
@@ -41,7 +42,7 @@ class ByLaw(JointTakeoff):
     law: str = field(default="", kw_only=True, metadata={"structure": True})
     gains: Mapping[str, float] = _declared.quantity("1", default=_NO_TABLE, table=True)
     noise: Mapping[str, float] = _declared.quantity("1", default=_NO_TABLE, table=True)
-    every: float = field(default=0.01, kw_only=True, metadata={"structure": True})
+    every: float = field(default=0.02, kw_only=True, metadata={"structure": True})
     delay: float = field(default=0.0, kw_only=True, metadata={"structure": True})
 
     def settled(self, joint: Joint) -> JointTakeoff:
@@ -72,10 +73,30 @@ class ByLaw(JointTakeoff):
         noise = {mirrored_name(name, model): x for name, x in self.noise.items()}
         return replace(plan, law=law.text, noise=_declared.Table(noise))
 
-    def scaled_in_time(self, factor: float) -> Any:
-        raise SomersaultError("a law has a time of its own, that of whoever senses; leave it as is")
-
     def reversed_in_time(self, end: float) -> Any:
+        """Refused: a law senses what was, so it does not run backwards.
+
+        Parameters
+        ----------
+        end : float
+            s.
+
+        Returns
+        -------
+        JointTakeoff
+
+        Raises
+        ------
+        SomersaultError
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> so.JointTakeoff.rate_law(law="twist").reversed_in_time(1.0)
+        Traceback (most recent call last):
+            ...
+        somersault._core.errors.SomersaultError: a law senses what was, so it does not run backwards
+        """
         raise SomersaultError("a law senses what was, so it does not run backwards")
 
     def kind(self) -> Any:
@@ -94,17 +115,33 @@ class ByLaw(JointTakeoff):
         """Ticks between sensing and acting."""
         return round(self.delay / self.every)
 
-    def sampling(self) -> float | None:
-        return self.every
+    @property
+    def sensing(self) -> Sensing:
+        return self
 
+    @property
     def carried(self) -> int:
+        """How many numbers it carries: what is done now, and the commands that wait."""
         return 1 + self.waits
 
-    def is_noisy(self) -> bool:
+    @property
+    def noisy(self) -> bool:
+        """Whether it senses with noise."""
         return bool(self.noise)
 
-    def carried_at_takeoff(self, q: Array, u: Array) -> Array:
-        first = np.repeat(self.before(q, u)[:, None], self.carried(), 1)
+    def at_takeoff(self, q: Array, u: Array) -> Array:
+        """What it carries before the first tick.
+
+        Parameters
+        ----------
+        q, u : ndarray, (count, 1)
+            Its own, at takeoff.
+
+        Returns
+        -------
+        ndarray, (count, carried)
+        """
+        first = np.repeat(self.before(q, u)[:, None], self.carried, 1)
         first[:, 0] = 0.0
         return first
 
@@ -123,8 +160,18 @@ class ByLaw(JointTakeoff):
         return np.zeros(len(q))
 
     def tick(self, here: Here, senses: Senses) -> list[Any]:
-        """What the law says now goes to the end of those that wait; the first of them is acted on
-        (`acted_on`), and stands in front."""
+        """What it carries from a tick on: what the law says now goes to the end of those commands
+        that wait, the first of them is acted on, and what that comes to stands in front.
+
+        Parameters
+        ----------
+        here : Here
+        senses : Senses
+
+        Returns
+        -------
+        list
+        """
         known = dict(senses.known)
         for name in self.gains:
             if name in known:

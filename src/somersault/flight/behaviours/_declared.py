@@ -6,7 +6,7 @@ ensemble may vary and their units.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, Literal
 
@@ -17,6 +17,7 @@ from somersault._core.checks import by_name
 from somersault._core.degrees import note_degrees
 from somersault._core.notes import note
 from somersault._core.numbers import number, numbers
+from somersault.flight.behaviours._limits import within
 from somersault.model import Joint
 from somersault.simulation import Name, Numbers
 
@@ -166,6 +167,20 @@ def note_strange(where: str, joint: Joint, name: str, what: Quantity, value: Any
         note_degrees(f"{where}: {name}", value)
     if what.usual is not None and value < what.usual:
         note(f"{where} has negative {name} ({value:g}), which drives it away from rest")
+
+
+def sound(
+    joint: Joint, known: Mapping[str, Quantity], names: Iterable[Name], values: Numbers, count: int
+) -> Array:
+    """Whether the numbers of such names are within what is declared of them, (count,)."""
+    good = np.ones(count, bool)
+    for key in names:
+        what, value = known[str(key[0])], np.asarray(values[key])
+        if what.limited and joint.kind != "ball":
+            good &= within(joint, value)
+        if what.least is not None:
+            good &= value >= what.least
+    return good
 
 
 def spread(joint: str, name: str, value: Any) -> dict[Name, float]:

@@ -65,14 +65,3 @@ class Known:
     q: list[Any]
     u: list[Any]
     a: list[Any]
-
-
-@dataclass(frozen=True)
-class Senses:
-    """What is sensed of the body at a tick.
-
-    `known` are the quantities by name; `normal` gives a normal deviate, another one each time.
-    """
-
-    known: Mapping[str, Any]
-    normal: Callable[[], Any]
