@@ -129,6 +129,7 @@ NOT_FOR_USERS = {
             "Begun*",
             "Flight",
             "Flights",
+            "Flights.ending_in_words",
             "Flights.history",
             "Flights.run",
             "Flights.sound",

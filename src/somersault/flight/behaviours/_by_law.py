@@ -171,6 +171,11 @@ class ByLaw(JointTakeoff):
         Returns
         -------
         list
+
+        Raises
+        ------
+        SomersaultError
+            For a gain that has the name of something that is sensed.
         """
         known = dict(senses.known)
         for name in self.gains:
