@@ -1129,7 +1129,7 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     # --- robots
     **{
         f"robot.{name}": _table(name)
-        for name in ("End", "Errors", "Flip", "Hips", "Plant", "Push", "Running", "Start")
+        for name in ("End", "Errors", "Flip", "Hips", "Plant", "Push", "Running", "Start", "Twist")
     },
     "robot.Control": lambda: (robot.Control, vars(robot.Control())),
     "robot.Leg": lambda: (_leg, vars(robot.Leg.called("left"))),
@@ -1155,6 +1155,7 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
         {"robot": robot.Robot(), "control": robot.Control(), "duration": 1.0},
     ),
     "robot.Runs.targets": lambda: (robot.Runs().targets, {"path": "flip.torque"}),
+    "robot.maneuver": lambda: (robot.maneuver, {"name": "half_twist"}),
     "robot.parse_runs": lambda: (
         robot.parse_runs,
         {"given": {"robot": "biped", "flip": {"at": 1.0}}, "beside": Path()},

@@ -95,9 +95,10 @@ class TestUnits:
         units = {name: unit(*name) for name in Control().numbers()}
         assert set(units.values()) <= set(_POWERS)
         pure = {name for name, of in units.items() if of == "1"}
-        assert {table for table, _ in pure} == {"plant", "errors", "running", "flip", "end"}
-        assert {name for table, name in pure if table in ("running", "flip", "end")} == {
-            "thrust_factor", "friction", "servo", "steps_after",
+        tables = {"running", "flip", "twist", "end"}
+        assert {table for table, _ in pure} == {"plant", "errors", *tables}
+        assert {name for table, name in pure if table in tables} == {
+            "thrust_factor", "friction", "servo", "steps_after", "pace", "straddle_gain",
         }  # fmt: skip
 
     def test_of_some(self) -> None:

@@ -24,10 +24,13 @@ JOINTS = {
     "human_pike": (),
     "human_tuck": (),
     "book": (),
-    "biped": tuple(
-        f"{side}_{joint}"
-        for side in ("left", "right")
-        for joint in ("hip_y", "hip_x", "hip_z", "leg")
+    **dict.fromkeys(
+        ("biped", "biped_weighted"),
+        tuple(
+            f"{side}_{joint}"
+            for side in ("left", "right")
+            for joint in ("hip_y", "hip_x", "hip_z", "leg")
+        ),
     ),
     "gymnast": (
         "torso_twist",
@@ -49,9 +52,10 @@ MASSES = {
     "human_tuck": 73.0,
     "book": 1.0,
     "biped": 31.44,
+    "biped_weighted": 31.44 + 4.0,
     "gymnast": 64.0,
 }
-ROBOTS = ("biped",)  # which run on the ground; `test_robot_model.py` is about them
+ROBOTS = ("biped", "biped_weighted")  # which run on the ground; `test_robot_model.py` is about them
 
 
 class Posed(NamedTuple):

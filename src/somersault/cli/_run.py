@@ -26,6 +26,7 @@ EXAMPLES = """examples:
   somersault run biped
   somersault run biped --flip at=5 --video flip.mp4
   somersault run biped --flip at=5 attitude=6.0 --duration 12 --json
+  somersault run biped_weighted --half-twist at=5 --video half_twist.mp4
   somersault run SPEC.toml --out run.nc --page run.html
 
 A SPEC, of which all but the robot may be left out:
@@ -47,9 +48,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "model", metavar="MODEL", help="a shipped robot, a file of one (.xml), or a SPEC (.toml)"
     )
-    parser.add_argument(
+    maneuver = parser.add_mutually_exclusive_group()
+    maneuver.add_argument(
         "--flip", nargs="+", metavar="KEY=NUMBER",
         help="somersault: at=SECONDS, and other numbers of [flip]",
+    )  # fmt: skip
+    maneuver.add_argument(
+        "--half-twist", nargs="+", metavar="KEY=NUMBER",
+        help="the same, with half a twist, which the model biped_weighted can do",
     )  # fmt: skip
     parser.add_argument(
         "--duration", type=float, metavar="S", help="s (default: 10, or the SPEC's)"
@@ -73,7 +79,7 @@ def run(chosen: argparse.Namespace) -> None:
 
 
 def _asked_for(chosen: argparse.Namespace) -> Runs:
-    from somersault.robot import Flip, Robot, Runs, read_runs
+    from somersault.robot import Flip, Robot, Runs, maneuver, read_runs
     from somersault.spec import structured
 
     if chosen.model.endswith(".toml"):
@@ -82,15 +88,23 @@ def _asked_for(chosen: argparse.Namespace) -> Runs:
         runs = Runs(Robot(chosen.model))
     if chosen.duration is not None:
         runs = replace(runs, duration=chosen.duration)
-    if chosen.flip:
-        given = assignments("--flip", chosen.flip)
-        structured(given, Flip, "flip", "--flip")  # refuses what is none of its numbers
+    option, said = "--flip", chosen.flip
+    if chosen.half_twist:
+        option, said = "--half-twist", chosen.half_twist
+        if chosen.model.endswith(".toml"):
+            raise SomersaultError(
+                '--half-twist is for a model; write maneuver = "half_twist" in the SPEC instead'
+            )
+        runs = replace(runs, control=maneuver("half_twist"))
+    if said:
+        given = assignments(option, said)
+        structured(given, Flip, "flip", option)  # refuses what is none of its numbers
         flip = replace(runs.control.flip, **given)
         runs = replace(runs, control=replace(runs.control, flip=flip))
         if flip.at >= runs.duration:
             raise SomersaultError(
                 f"the somersault is to be at {flip.at:g} s, but the run is over at "
-                f"{runs.duration:g}; give --flip at=S, or a longer --duration"
+                f"{runs.duration:g}; give {option} at=S, or a longer --duration"
             )
     return runs
 

@@ -12,15 +12,18 @@ from somersault.robot._control import (
     Start,
 )
 from somersault.robot._controller import Controller
+from somersault.robot._maneuvers import MANEUVERS, maneuver
 from somersault.robot._robot import Leg, Machine, Robot
 from somersault.robot._run import Event, Run, run, run_of
 from somersault.robot._runs import Runs
 from somersault.robot._spec import KEYS, parse_runs, read_runs
 from somersault.robot._states import Exit, Now, State
+from somersault.robot._twist import Twist
 from somersault.robot._units import similar, unit
 
 __all__ = [
     "KEYS",
+    "MANEUVERS",
     "Control",
     "Controller",
     "End",
@@ -40,6 +43,8 @@ __all__ = [
     "Runs",
     "Start",
     "State",
+    "Twist",
+    "maneuver",
     "parse_runs",
     "read_runs",
     "run",

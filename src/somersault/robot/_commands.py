@@ -64,22 +64,23 @@ def level(leg: SensedLeg, forward: Any, leftward: Any, drop: Any) -> Any:
 # --------------------------------------------------------------------------- hips in stance
 
 
-def attitude_error(now: Sensed, pitch: Any) -> Any:
+def attitude_error(now: Sensed, pitch: Any, yaw: Any = 0.0) -> Any:
     """By how much the torso is to turn about the axes of the course, rad; `pitch` is the somersault
-    angle that is wanted.
+    angle that is wanted, and `yaw` the angle to the left of the course.
 
     Roll and yaw are the cross product of its side axis as it is and as it should be: that is
     right at any pitch.
     """
-    error = ca.cross(now.attitude[:, 1], ca.DM([0, 1, 0]))
+    side = vector([-ca.sin(yaw), ca.cos(yaw), 0.0])
+    error = ca.cross(now.attitude[:, 1], side)
     return vector([error[0], pitch - now.somersault, error[2]])
 
 
-def righting(now: Sensed, gains: Running, pitch: Any) -> Any:
+def righting(now: Sensed, gains: Running, pitch: Any, yaw: Any = 0.0) -> Any:
     """The moment that keeps the torso upright in stance, N m."""
     stiffness = vector([gains.roll_stiffness, gains.pitch_stiffness, gains.yaw_stiffness])
     damping = vector([gains.roll_damping, gains.pitch_damping, gains.yaw_damping])
-    return stiffness * attitude_error(now, pitch) - damping * now.rates
+    return stiffness * attitude_error(now, pitch, yaw) - damping * now.rates
 
 
 def stance_torques(now: Sensed, gains: Running, moment: Any) -> list[Any]:

@@ -10,6 +10,7 @@ from typing import Any
 from somersault._core.checks import instance
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
+from somersault.robot._twist import Twist
 
 NEVER = 1e6
 """A time (s), or a number of steps, that no run reaches."""
@@ -40,6 +41,8 @@ class Running:
         For which feet are placed, s.
     speed_gain : float
         m of foot for each m/s of speed that is too much.
+    speed_change : float
+        That a step is to make in the speed forwards, at most, m/s.
     foot_offset : float
         By which a foot is put down to its own side of the centre of mass, m.
     roll_stiffness, pitch_stiffness, yaw_stiffness : float
@@ -62,6 +65,7 @@ class Running:
     thrust_factor: float = 1.06
     stance_time: float = 0.17
     speed_gain: float = 0.07
+    speed_change: float = NEVER
     foot_offset: float = 0.04
     roll_stiffness: float = 600.0
     pitch_stiffness: float = 150.0
@@ -289,6 +293,7 @@ class Control:
     running: Running = field(default_factory=Running)
     hips: Hips = field(default_factory=Hips)
     flip: Flip = field(default_factory=Flip)
+    twist: Twist = field(default_factory=Twist)
     errors: Errors = field(default_factory=Errors)
     push: Push = field(default_factory=Push)
     end: End = field(default_factory=End)
@@ -337,6 +342,7 @@ class Symbolic:
     running: Running
     hips: Hips
     flip: Flip
+    twist: Twist
     errors: Errors
     push: Push
     end: End

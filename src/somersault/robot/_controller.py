@@ -31,6 +31,7 @@ REMEMBERED = {
     "landing_somersault": 0.0, "landing_rate": 0.0, "landing_tilt": 0.0, "landing_twist": 0.0,
     "landing_inclination": 0.0, "landing_wanted": 0.0, "landing_forward": 0.0,
     "greatest_tilt": 0.0, "greatest_torque": 0.0,
+    "course": 0.0, "to_turn": 0.0, "straddle": 0.0,
 }  # fmt: skip
 """What a controller remembers, and what of it at the start."""
 
@@ -75,7 +76,10 @@ class Controller:
         after = dict(before)
         after["clock"] = before["clock"] + PERIOD
         after["since"] = before["since"] + PERIOD
-        after["heading"] = before["heading"] + control.running.turn_rate * PERIOD
+        most = control.twist.turn_rate * PERIOD
+        turned = clip(before["to_turn"], -most, most)
+        after["to_turn"] = before["to_turn"] - turned
+        after["heading"] = before["heading"] + control.running.turn_rate * PERIOD + turned
         after["somersault"] = here.somersault
         after |= _attitude(here)
         commands = self._commands_and_changes(now, after)

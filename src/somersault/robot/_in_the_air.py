@@ -39,11 +39,15 @@ def tucked(now: Now, length: Any) -> list[Command]:
     flip = now.control.flip
     commands = []
     for k, leg in enumerate(now.sensed.legs):
-        out = flip.width / 2 - abs(float(now.machine.hips[k][1]))
-        aside = leg.side * ca.atan2(out, 0.75)
-        torques = held(leg, now.control.hips, (flip.feet_back, aside, 0.0))
+        torques = held(leg, now.control.hips, (flip.feet_back, abduction(now, k), 0.0))
         commands.append(Command(torques, length, flip.piston_speed))
     return commands
+
+
+def abduction(now: Now, which: int) -> Any:
+    """The angle of a hip about axis 1 with which the feet are as far apart as at the landing."""
+    out = now.control.flip.width / 2 - abs(float(now.machine.hips[which][1]))
+    return now.sensed.legs[which].side * ca.atan2(out, 0.75)
 
 
 def governed(now: Now) -> list[Command]:

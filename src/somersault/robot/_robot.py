@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from somersault._core.array import Array
 from somersault._core.checks import instance, name_list, shown, text
 from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault._core.numbers import number
@@ -116,6 +117,22 @@ class Robot:
         return Machine(self)
 
 
+@dataclass(frozen=True, eq=False)
+class Straight:
+    """A robot with straight legs of a length.
+
+    Parameters
+    ----------
+    inertias : array (3,)
+        About the torso's axes through the centre of mass, kg m².
+    rise : float
+        Of the centre of mass above the hips, m.
+    """
+
+    inertias: Array
+    rise: float
+
+
 PERIOD = 0.001
 """Of the controller, s."""
 
@@ -142,6 +159,8 @@ class Machine:
         Of the stop, N s/m.
     mass : float
         kg.
+    short, long : Straight
+        The robot with its legs as short and as long as they can be.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -227,6 +246,25 @@ class Machine:
         self.inertias = np.diag(whole)[3:6].copy()
         rotors = float(m.dof_armature[hips].sum())
         self.leg_inertia = float(whole[hips, hips].sum()) - rotors - away
+        self.short, self.long = (
+            self._straight(robot, data, length) for length in (robot.shortest, robot.longest)
+        )
+
+    def _straight(self, robot: Robot, data: Any, length: float) -> Straight:
+        """The robot with straight legs of a length."""
+        import mujoco
+
+        m = self.mujoco
+        for leg, resting in zip(robot.legs, self.resting, strict=True):
+            data.qpos[int(m.joint(leg.slide).qposadr[0])] = length - resting
+        mujoco.mj_kinematics(m, data)
+        mujoco.mj_comPos(m, data)
+        mujoco.mj_crb(m, data)
+        whole = np.zeros((m.nv, m.nv))
+        mujoco.mj_fullM(m, data, whole)
+        com = data.subtree_com[1]
+        away = self.mass * (com @ com - com**2)
+        return Straight(np.diag(whole)[3:6] - away, float(com[2] - self.hips[:, 2].mean()))
 
 
 class _Addresses:

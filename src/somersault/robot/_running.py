@@ -35,8 +35,10 @@ def upright(now: Now) -> Any:
 def stepping(now: Now, leg: SensedLeg, length: Any) -> Any:
     """Torques of a leg in the air that go to where its foot is to land."""
     gains, velocity = now.control.running, now.sensed.velocity
+    most = gains.speed_change
+    wanted = clip(gains.speed, velocity[0] - most, velocity[0] + most)
     forward = landing_window.displacement(
-        velocity[0], gains.speed, gains.stance_time, gains.speed_gain, 0.0
+        velocity[0], wanted, gains.stance_time, gains.speed_gain, 0.0
     )
     leftward = landing_window.displacement(
         velocity[1], 0.0, gains.stance_time, gains.speed_gain, leg.side * gains.foot_offset
@@ -64,10 +66,10 @@ def _flight(now: Now) -> list[Command]:
     return commands
 
 
-def one_leg_down(now: Now, pitch: Any, length: Any) -> list[Command]:
+def one_leg_down(now: Now, pitch: Any, length: Any, yaw: Any = 0.0) -> list[Command]:
     """The leg whose turn it is in stance with the body kept at a pitch, the other idle."""
     gains = now.control.running
-    moment = righting(now.sensed, gains, pitch)
+    moment = righting(now.sensed, gains, pitch, yaw)
     commands = []
     for leg, torques in zip(
         now.sensed.legs, stance_torques(now.sensed, gains, moment), strict=True

@@ -16,10 +16,11 @@ from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 from somersault.robot._control import Control, must_not_be_negative
 from somersault.robot._controller import FELL, RAN_ON, REMEMBERED, Controller
+from somersault.robot._half_twist import HalfTwist
 from somersault.robot._plant import Lane, advance
 from somersault.robot._robot import PERIOD, Robot
 from somersault.robot._running import running
-from somersault.robot._somersault import hurdle_is_due, somersault
+from somersault.robot._somersault import Somersault, hurdle_is_due
 from somersault.robot._units import unit
 from somersault.simulation import ENDED, Endings, Name, Numbers, Target, Variable
 
@@ -167,7 +168,7 @@ class Runs:
     @property
     def controller(self) -> Controller:
         """Its controller, compiled once for all runs of a robot."""
-        return _controller(self.robot, self.robot.machine.digest)
+        return _controller(self.robot, self.robot.machine.digest, self.control.twist.angle != 0)
 
     def run(self, values: Numbers, count: int) -> Mapping[str, Array]:
         """Run, and report.
@@ -210,9 +211,10 @@ class Runs:
 
 
 @lru_cache(maxsize=16)
-def _controller(robot: Robot, digest: str) -> Controller:
+def _controller(robot: Robot, digest: str, twists: bool) -> Controller:
     """The controller of a robot whose file has a digest."""
-    return Controller(robot, [*running(hurdle_is_due), *somersault()])
+    maneuver = HalfTwist() if twists else Somersault()
+    return Controller(robot, [*running(hurdle_is_due), *maneuver.states()])
 
 
 def _check_lengths(robot: Robot, control: Control) -> None:

@@ -3,15 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
 from somersault._core.checks import file_path, shown
 from somersault._core.errors import SomersaultError
-from somersault.robot._control import Control, End, Errors, Flip, Hips, Plant, Push, Running, Start
+from somersault.robot._control import (
+    Control,
+    End,
+    Errors,
+    Flip,
+    Hips,
+    Plant,
+    Push,
+    Running,
+    Start,
+)
+from somersault.robot._maneuvers import maneuver
 from somersault.robot._robot import Robot
 from somersault.robot._runs import Runs
+from somersault.robot._twist import Twist
 from somersault.spec import (
     Unfit,
     model_beside,
@@ -28,12 +40,14 @@ class Keys:
     """The keys of a SPEC of a run."""
 
     robot: Robot
+    maneuver: str = "somersault"
     duration: float = 10.0
     start: Start = field(default_factory=Start)
     plant: Plant = field(default_factory=Plant)
     running: Running = field(default_factory=Running)
     hips: Hips = field(default_factory=Hips)
     flip: Flip = field(default_factory=Flip)
+    twist: Twist = field(default_factory=Twist)
     errors: Errors = field(default_factory=Errors)
     push: Push = field(default_factory=Push)
     end: End = field(default_factory=End)
@@ -87,11 +101,20 @@ def parse_runs(given: Mapping[str, Any], beside: Path) -> Runs:
     folder = file_path("beside", beside)
     if "robot" not in given:
         raise SomersaultError('robot is missing; a SPEC of a run has robot = "biped", or a file')
-    tables = dict(given)
+    tables = _over(maneuver(given.get("maneuver", "somersault")), given)
     tables["robot"] = _found(tables["robot"], folder)
     keys = structured(tables, Keys)
     control = Control(**{table.name: getattr(keys, table.name) for table in fields(Control)})
     return Runs(keys.robot, control, keys.duration)
+
+
+def _over(numbers: Control, given: Mapping[str, Any]) -> dict[str, Any]:
+    """A SPEC's tables, with those numbers of a maneuver that they do not have."""
+    tables = dict(given)
+    for table, of_maneuver in asdict(numbers).items():
+        own = tables.get(table, {})
+        tables[table] = {**of_maneuver, **own} if isinstance(own, Mapping) else own
+    return tables
 
 
 def _found(robot: Any, beside: Path) -> Any:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import casadi as ca
 
 from somersault.robot._commands import Command, foot_angles, held, stance_torques, thrust
-from somersault.robot._expressions import all_of, any_of, choose, clip
+from somersault.robot._expressions import all_of, any_of, choose, clip, vector
 from somersault.robot._running import SHORTEST_STANCE
 from somersault.robot._sensed import SensedLeg
 from somersault.robot._states import Now
@@ -55,6 +56,23 @@ def two_legs_down(now: Now, moment: Any, length: Any) -> list[Command]:
     torques = stance_torques(now.sensed, now.control.running, moment)
     speed = now.control.flip.piston_speed
     return [Command(t, x, speed) for t, x in zip(torques, length, strict=True)]
+
+
+def two_legs_turning(now: Now, moment: Any, length: Any) -> list[Command]:
+    """Both legs in stance, and a moment about the vertical: one foot pushes forwards, the other
+    back, as far as friction lets them."""
+    left, right = now.sensed.legs
+    apart = ca.fmax(left.foot[1] - right.foot[1], 0.1)
+    both = choose(all_of(left.is_down, right.is_down), 1.0, 0.0)
+    most = both * now.control.running.friction * ca.fmin(left.force, right.force)
+    push = clip(moment[2] / apart, -most, most)
+    rest = vector([moment[0], moment[1], moment[2] * (1 - both)])
+    commands = []
+    for leg, command in zip(now.sensed.legs, two_legs_down(now, rest, length), strict=True):
+        force = vector([-leg.side * push, 0.0, 0.0])
+        torques = command.torques - leg.axes.T @ ca.cross(leg.foot - leg.hip, force)
+        commands.append(replace(command, torques=torques))
+    return commands
 
 
 def two_leg_thrust(now: Now, speed: Any) -> dict[str, Any]:

@@ -13,12 +13,14 @@ _BY_TABLE = {"plant": "1", "push": "N"}
 _BY_NAME = {
     "at": "s", "duration": "s", "hold": "s", "window": "s", "stance_time": "s", "speed_gain": "s",
     "landing_gain": "s", "speed": "m/s", "hurdle_speed": "m/s", "lift_off_speed": "m/s",
-    "landing_speed": "m/s", "landing_lift_off": "m/s", "piston_speed": "m/s", "forward": "m/s",
-    "sideways": "m/s", "upward": "m/s", "turn_rate": "rad/s", "roll_rate": "rad/s",
-    "pitch_rate": "rad/s", "yaw_rate": "rad/s", "torque": "N m", "height": "m", "leg_length": "m",
+    "landing_speed": "m/s", "speed_change": "m/s", "landing_lift_off": "m/s",
+    "piston_speed": "m/s", "forward": "m/s", "sideways": "m/s", "upward": "m/s",
+    "turn_rate": "rad/s", "roll_rate": "rad/s", "pitch_rate": "rad/s", "yaw_rate": "rad/s",
+    "sideways_gain": "s", "torque": "N m", "height": "m", "leg_length": "m",
     "idle_length": "m", "held_length": "m", "fall_height": "m", "foot": "m", "foot_offset": "m",
     "landing_foot": "m", "width": "m", "turning_friction": "m", "roll": "rad", "pitch": "rad",
-    "hurdle_pitch": "rad", "feet_back": "rad", "attitude": "rad",
+    "hurdle_pitch": "rad", "feet_back": "rad", "attitude": "rad", "angle": "rad", "wind_up": "rad",
+    "lean": "rad", "straddle": "rad",
 }  # fmt: skip
 _OF_ERRORS = {
     "lift_off_speed": "1", "torque": "1", "thrust": "1", "roll": "rad/s", "pitch": "rad/s",
