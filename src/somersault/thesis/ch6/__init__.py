@@ -23,6 +23,14 @@ CHAPTER = Chapter(
         _entry("fig6-5", "Figure 6-5: the same start, compliant", "_rudi_flights.fig_6_5"),
         _entry("table6-1", "Table 6.1: the rudi's eigenfrequencies", "_eigenfrequencies.table_6_1"),
         _entry("fig6-6", "Figure 6-6: the 3D Biped's map with a weight", "_weighted_biped.fig_6_6"),
+        _entry("fig6-7", "Figure 6-7: a half twist in pictures", "_half_twist.fig_6_7"),
+        _entry("fig6-8", "Figure 6-8: a half twist over time", "_half_twist.fig_6_8"),
+        _entry(
+            "ch6-attempts",
+            "Attempts of a half twist",
+            "_half_twist_attempts.attempts_of_half_twist",
+            beyond=True,
+        ),
         _entry(
             "ch6-why",
             "Why compliance lands better",
