@@ -1,0 +1,13 @@
+"""Chapter 7, the conclusions: passive and active control of one somersault, side by side."""
+
+from functools import partial
+
+from somersault.thesis._entries import Chapter, Entry
+
+_entry = partial(Entry.of, __name__)
+
+CHAPTER = Chapter(
+    "ch7",
+    "Conclusions",
+    (_entry("sec7-4", "§7.4: passive, active, and both", "_together.passive_and_active"),),
+)
