@@ -157,9 +157,9 @@ PLANAR = Plant(roll_inertia=1e3, yaw_inertia=1e3)
 # As scripts/biped.py finds them best on the seeds for tuning.
 ABLATIONS: dict[str, dict[str, float]] = {
     "all of it": {},
-    "no tuck servo": {"servo": 0.0, "held_length": 0.75},
-    "no landing window": {"window": -1.0, "feet_back": 0.0},
-    "neither": {"servo": 0.0, "held_length": 0.75, "window": -1.0, "feet_back": 0.0},
+    "no tuck servo": {"servo": 0.0, "held_length": 0.70, "torque": 95.0},
+    "no landing window": {"window": -1.0, "feet_back": 0.2, "torque": 95.0},
+    "neither": {"servo": 0.0, "held_length": 0.80, "window": -1.0, "feet_back": 0.2},
     "narrow stance": {"width": 0.12},
 }
 
