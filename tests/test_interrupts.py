@@ -70,12 +70,17 @@ def begun(arguments: Sequence[str], folder: Path, how: str = "SIG_DFL") -> subpr
 
 def heeds(program: subprocess.Popen[str]) -> bool:
     """Whether it is its own program already, and not yet Python that starts."""
+    return _has(program, "SigCgt", signal.SIGTERM)
+
+
+def _has(program: subprocess.Popen[str], mask: str, number: int) -> bool:
+    """Whether a signal is in one of the masks that the system shows of a program."""
     try:
         status = Path(f"/proc/{program.pid}/status").read_text()
     except (FileNotFoundError, ProcessLookupError):
         return False
-    blocked = next(line for line in status.splitlines() if line.startswith("SigBlk"))
-    return bool(int(blocked.split()[1], 16) & 1 << signal.SIGINT - 1)
+    found = [line for line in status.splitlines() if line.startswith(mask)]
+    return bool(found) and bool(int(found[0].split()[1], 16) & 1 << number - 1)
 
 
 def wait_until(true: Callable[[], bool]) -> None:
@@ -164,6 +169,7 @@ def test_a_signal_to_terminate_does_the_same(folder: Path) -> None:
 def test_a_command_in_the_background_goes_on(folder: Path) -> None:
     """A shell has it ignore interrupts, which are for what is in front."""
     program = begun(["map", "human_layout"], folder, "SIG_IGN")
+    wait_until(lambda: _has(program, "SigIgn", signal.SIGINT))
     deadline = time.monotonic() + PATIENCE
     while program.poll() is None and time.monotonic() < deadline:
         program.send_signal(signal.SIGINT)

@@ -10,7 +10,11 @@ The public names are listed once, in `__init__.pyi`; each is imported when it is
 starting costs little.
 """
 
-from typing import Any
+from __future__ import annotations
+
+TYPE_CHECKING = False  # typing's, which takes time to import
+if TYPE_CHECKING:
+    from typing import Any
 
 __version__ = "0.2.0"
 

@@ -13,7 +13,7 @@ import sys
 
 from somersault._core.stages import stage
 
-SECONDS = 20  # of one processor
+SECONDS = 10  # of one processor
 WAIT = 60  # s, where the machine has much else to do
 MORE_BYTES = 2**31  # above what the process takes before it reads
 _TOO_LONG = "takes more than {} s to read"
