@@ -113,8 +113,18 @@ export class Viewer {
 function facts(flight, inertias) {
   const order = flight.jointsMove ? "of the moment; the curves go with the joints" : "of the body as it is held";
   const numbers = inertias.map((value) => Number(value.toPrecision(3))).join(", ");
-  const size = flight.vectors.momentum.longest ? `h = ${Number(flight.vectors.momentum.longest.toPrecision(3))} kg m\u00b2/s` : "no angular momentum";
+  const { values, longest } = flight.vectors.momentum;
+  const size = longest ? `h = ${spanned(values, longest)} kg m\u00b2/s` : "no angular momentum";
   return `Principal axes ${order}. I = ${numbers} kg m\u00b2, ${size}.`;
+}
+
+// A length that stays, or from where to where one goes: a robot's momentum is another on the ground.
+function spanned(values, longest) {
+  const lengths = [];
+  for (let k = 0; k < values.length; k += 3) lengths.push(Math.hypot(values[k], values[k + 1], values[k + 2]));
+  const shown = (value) => String(Number(value.toPrecision(3)));
+  const [least, most] = [Math.min(...lengths), longest];
+  return least > 0.99 * most ? shown(most) : `${shown(least)} to ${shown(most)}`;
 }
 
 function drawn(place, make) {

@@ -58,7 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="the same, with half a twist, which the model biped_weighted can do",
     )  # fmt: skip
     parser.add_argument(
-        "--duration", type=float, metavar="S", help="s (default: 10, or the SPEC's)"
+        "--duration", type=float, metavar="S", help="s (default: 20, or the SPEC's)"
     )
     add_motion_outputs(parser)
     parser.add_argument("--json", action="store_true", help="print JSON for programs")

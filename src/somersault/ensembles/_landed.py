@@ -91,7 +91,7 @@ def landings(
 def _of_two(landed: Array, what: str) -> tuple[list[str], Key]:
     """Colours of bodies that landed or did not, and what the colours mean."""
     colors = [BLUE if one else VERMILION for one in landed]
-    key = [(BLUE, f"{int(landed.sum())} of {len(landed)} {what}")]
+    key = [(BLUE, f"{int(landed.sum())} of the {len(landed)} shown {what}")]
     if not landed.all():
         key.append((VERMILION, f"{int((~landed).sum())} did not land"))
     return colors, key

@@ -41,7 +41,7 @@ class Keys:
 
     robot: Robot
     maneuver: str = "somersault"
-    duration: float = 10.0
+    duration: float = Runs.duration
     start: Start = field(default_factory=Start)
     plant: Plant = field(default_factory=Plant)
     running: Running = field(default_factory=Running)

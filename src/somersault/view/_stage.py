@@ -89,24 +89,28 @@ class Stage:
         low = min(float(actor.outline[0][..., 2].min()) for actor in self._all)
         return low - 0.02 * self.radius
 
-    @cached_property
-    def _plane(self) -> Ground | None:
+    def _plane(self, target: Array) -> Ground | None:
+        """The ground, seen about the place that the eye looks at."""
         if not self.ground or self.camera[1] <= 0:
             return None
         spacing = 10.0 ** np.floor(np.log10(self.radius))  # 1, 2 or 5 of a power of ten
         spacing *= next(k for k in (5, 2, 1) if k * spacing <= self.radius)
-        middle = self._middle if not self._follows else self.actors[0].centres.mean(0)
-        return Ground(self._level, spacing / 2, 3.2 * self.radius, (middle[0], middle[1]))
+        return Ground(self._level, spacing / 2, 3.2 * self.radius, (target[0], target[1]))
 
     def eye(self, k: int) -> Eye:
         """The eye at a moment."""
-        target = self.actors[0].centres[k] if self._follows else self._middle
-        return Eye(target, *self.camera, self.radius, self.width, self.height)
+        return Eye(self._target(k), *self.camera, self.radius, self.width, self.height)
+
+    def _target(self, k: int) -> Array:
+        """What the eye looks at."""
+        target: Array = self.actors[0].centres[k] if self._follows else self._middle
+        return target
 
     def draw(self, moments: Sequence[int]) -> Array:
         """A picture (height, width, 4) of bytes, valid until the next: all that is there at the
         given moment; at several of them, as a stroboscope shows it."""
-        canvas, eye, plane = self._canvas, self.eye(moments[0]), self._plane
+        canvas, eye = self._canvas, self.eye(moments[0])
+        plane = self._plane(self._target(moments[0]))
         canvas.begin(eye, plane)
         solids = [self._posed(actor, k) for k in moments for actor in self.actors]
         solids += [item for k in moments for item in self._arrows(k)]

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_MOST_LABELS = 6
+_IN_A_COLUMN = 6  # labels
+_STYLES = ("-", ":", "-.", (0, (1, 3)), (0, (6, 3)))  # of lines that have the same colour
 _STILL = 5e-3  # rad or m: joints that move less are left out
 _NAMES_SIZE = 8  # points
 _NAMES_SHARE = 0.68  # of the width, for the words in a line above the charts
@@ -102,10 +103,18 @@ def _drawn(figure: Figure, histories: Sequence[History]) -> list[Axes]:
             for other in histories[:0:-1]:
                 if name in _known(other):
                     ax.plot(other.times, _values(other, name), "--", color=color, lw=1, alpha=0.7)
-            ax.plot(times, _values(first, name), color=color, lw=1.6, label=_worded(name))
-        if 1 < len(lines) <= _MOST_LABELS:
-            ax.legend(frameon=False, fontsize=7, loc="best", handlelength=1.2, labelspacing=0.2)
-        ax.set_ylabel(words, fontsize=9)
+            again = [n for n, other in lines if other == color].index(name)
+            ax.plot(
+                times, _values(first, name), ls=_STYLES[again % len(_STYLES)], color=color, lw=1.6,
+                label=_worded(name),
+            )  # fmt: skip
+        if len(lines) > 1:
+            columns = 1 + (len(lines) - 1) // _IN_A_COLUMN
+            ax.legend(
+                frameon=False, fontsize=7 if columns == 1 else 6, loc="best", handlelength=1.2,
+                labelspacing=0.2, ncols=columns, columnspacing=1.0,
+            )  # fmt: skip
+        ax.set_ylabel(words if len(lines) > 1 else _alone(words, lines[0][0]), fontsize=9)
         ax.set_facecolor("white")
         ax.tick_params(labelsize=8.5)
         ax.margins(x=0)
@@ -146,6 +155,11 @@ def _name_lines(ax: Axes, labels: Sequence[str], width: int, dots: float) -> Non
 def _points(size: float, dots: float) -> float:
     """Letters of so many points, in pixels."""
     return size * dots / 72
+
+
+def _alone(words: str, name: str) -> str:
+    """What stands beside a chart of one line: its name, with the unit of the others."""
+    return f"{_worded(name)} {words[words.index('(') :]}"
 
 
 def _worded(name: str) -> str:
