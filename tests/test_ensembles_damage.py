@@ -24,6 +24,8 @@ VARY = {
 }
 
 
+VAST = 2**40  # bytes, which no memory holds; of zeros, which take no room on a disk
+
 REPORT = so.Report(("tilt",), history=("twist",), samples=3)
 
 
@@ -65,7 +67,9 @@ def other(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("name", ["tilt", "twist_history", "steps", "ended", "start", "seal"])
-@pytest.mark.parametrize("damage", ["gone", "empty", "short", "zeros", "one bit", "folder", "pipe"])
+@pytest.mark.parametrize(
+    "damage", ["gone", "empty", "short", "zeros", "one bit", "folder", "pipe", "vast"]
+)
 def test_what_is_damaged_is_flown_again_and_said(
     stored: Path, whole: so.Ensemble, tmp_path: Path, name: str, damage: str
 ) -> None:
@@ -78,6 +82,8 @@ def test_what_is_damaged_is_flown_again_and_said(
     elif damage in ("folder", "pipe"):
         file.unlink()
         (file.mkdir if damage == "folder" else lambda: os.mkfifo(file))()
+    elif damage == "vast":
+        os.truncate(file, VAST)
     elif damage == "one bit":
         file.write_bytes(bytes([content[0] ^ 16]) + content[1:])
     else:
@@ -141,12 +147,16 @@ def test_metadata_are_mended(stored: Path, whole: so.Ensemble, tmp_path: Path, f
     assert said.read_text() == content
 
 
+@pytest.mark.parametrize("damage", ["another's", "vast"])
 def test_coordinates_are_mended(
-    stored: Path, other: Path, whole: so.Ensemble, tmp_path: Path
+    stored: Path, whole: so.Ensemble, tmp_path: Path, damage: str
 ) -> None:
     store = tmp_path / "s.zarr"
     shutil.copytree(stored, store)
-    (store / "rate/c/0").write_bytes((store / "start/c/0").read_bytes()[: 2 * 8 + 4])
+    if damage == "vast":
+        os.truncate(store / "rate/c/0", VAST)
+    else:
+        (store / "rate/c/0").write_bytes((store / "start/c/0").read_bytes()[: 2 * 8 + 4])
     with pytest.raises(so.SomersaultError, match="its coordinates are damaged"):
         so.Ensemble.open(store)
     with pytest.warns(so.SomersaultWarning, match=r"damaged \(what it says of .*rate"):

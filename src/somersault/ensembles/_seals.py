@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -36,6 +37,8 @@ class Seals:
     """The variables that have samples over time, all in the same chunk."""
     drawn: tuple[str, ...]
     """The varied quantities along `sample`, which the first chunk of some samples brings."""
+    samples: int
+    """How many samples over time there are, 0 without any."""
 
     def files(self, k: int) -> Iterator[Path]:
         """The files that chunk k writes, but for its seal."""
@@ -60,8 +63,9 @@ class Seals:
     def seal(self, k: int) -> bytes:
         """The seal that fits chunk k as its files are now; OSError where one is missing."""
         digest = hashlib.sha256(f"{self.of} {k}".encode())
+        most = most_bytes(math.prod(self.chunks.shape) * max(self.samples, 1))
         for file in self.files(k):
-            content = read_bytes(file)
+            content = read_bytes(file, most)
             digest.update(f" {len(content)} ".encode())
             digest.update(content)
         return digest.digest()
@@ -77,7 +81,7 @@ class Seals:
     def _fits(self, k: int) -> bool | None:
         """Whether chunk k fits its seal; None where it has none yet."""
         try:
-            sealed = read_bytes(self.seal_file(k))
+            sealed = read_bytes(self.seal_file(k), SEAL_BYTES + 1)
         except FileNotFoundError:
             return None
         except OSError:
@@ -86,6 +90,12 @@ class Seals:
             return sealed == self.seal(k)
         except OSError:
             return False
+
+
+def most_bytes(values: int) -> int:
+    """How much of the file of so many values is read: more than it has if it is whole, so that a
+    file that has grown, however large, does not fit and takes no memory."""
+    return 8 * values + 64  # numbers of at most 8 bytes, and a checksum
 
 
 def brings_samples(chunks: Chunks, k: int) -> bool:
@@ -103,6 +113,7 @@ def seals_of_plan(path: Path, plan: Plan, chunks: Chunks) -> Seals:
         tuple(plan.variables),
         tuple(name for name, v in plan.variables.items() if v.over_time),
         tuple(plan.along_samples),
+        len(plan.simulation.times),
     )
 
 
@@ -127,4 +138,5 @@ def seals_of_store(path: Path, metadata: dict[str, Any]) -> Seals:
         variables,
         over_time,
         tuple(attributes.get("coordinates", "").split()),
+        arrays[OVER_TIME]["shape"][0] if OVER_TIME in arrays else 0,
     )
