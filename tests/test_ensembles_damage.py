@@ -100,6 +100,24 @@ def test_what_is_damaged_is_flown_again_and_said(
     same(so.Ensemble.open(store), whole)
 
 
+@pytest.mark.parametrize(
+    "folder",
+    ["tilt", "tilt/c", "tilt/c/0", "twist_history/c/0/1", "start/c", "rate", "rate/c",
+     "seal", "seal/c", "seal/c/0", "seal/c/0/1"],
+)  # fmt: skip
+def test_a_file_where_a_folder_was(
+    stored: Path, whole: so.Ensemble, tmp_path: Path, folder: str
+) -> None:
+    store = tmp_path / "s.zarr"
+    shutil.copytree(stored, store)
+    shutil.rmtree(store / folder)
+    (store / folder).write_text("hi")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", so.SomersaultWarning)
+        same(flown(store), whole)
+    same(so.Ensemble.open(store), whole)
+
+
 @pytest.mark.parametrize("swapped", ["two chunks", "two variables", "another store"])
 def test_a_chunk_that_is_whole_but_not_in_its_place(
     stored: Path, other: Path, whole: so.Ensemble, tmp_path: Path, swapped: str

@@ -56,7 +56,7 @@ class Seals:
         return self.path.joinpath(SEAL, "c", *map(str, self.chunks.place(k)), "0")
 
     def make_way(self, k: int) -> None:
-        """Remove folders and pipes that stand where files of chunk k are to be."""
+        """Remove what else stands where files of chunk k and their folders are to be."""
         for file in (*self.files(k), self.seal_file(k)):
             make_way(file)
 
