@@ -13,6 +13,7 @@ from somersault.cli._outputs import (
     PICTURES,
     Writing,
     check_apart,
+    check_distinct,
     save_picture,
     written_lines,
 )
@@ -87,6 +88,7 @@ def run(chosen: argparse.Namespace) -> None:
     if chosen.landings is not None:
         check_file(chosen.landings, (".png",))
     whole = chosen.out is not None and check_out(chosen.out)  # written in one piece, at the end
+    check_distinct(chosen.out, chosen.plot, chosen.landings)
     check_apart(chosen.spec, chosen.out, chosen.plot, chosen.landings)
     spec = read_ensemble(chosen.spec)
     flown = carried_out(
