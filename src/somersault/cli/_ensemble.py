@@ -128,6 +128,11 @@ def _security(chosen: argparse.Namespace) -> Any:
 
     if chosen.tls_ca is None and chosen.tls_cert is None and chosen.tls_key is None:
         return None
+    if chosen.scheduler is None:
+        raise SomersaultError(
+            "--tls-ca, --tls-cert and --tls-key go with --scheduler; give its address, tls://…, "
+            "or leave them out"
+        )
     if chosen.tls_ca is None or chosen.tls_cert is None:
         raise SomersaultError("--tls-ca and --tls-cert go together; give both, and --tls-key")
     return tls_files(chosen.tls_ca, chosen.tls_cert, chosen.tls_key)
