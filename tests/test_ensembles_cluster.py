@@ -252,7 +252,7 @@ def test_a_cluster_with_certificates(tmp_path: Path) -> None:
             (address, tls_files(**mixed), "does not take your certificate"),
             (address, None, "needs certificates; give --tls-ca"),
             (f"tcp://127.0.0.1:{port}", tls_files(**ours), "write tls:// in front"),
-            (f"tcp://127.0.0.1:{port}", None, "no scheduler answers"),
+            (f"tcp://127.0.0.1:{port}", None, "speaks TLS; write tls:// in front"),
         ):
             with pytest.raises(SomersaultError, match=words) as mistake:
                 check_scheduler(at, security)

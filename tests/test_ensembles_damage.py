@@ -24,6 +24,8 @@ VARY = {
 }
 
 
+VAST = 2**40  # bytes, which no memory holds; of zeros, which take no room on a disk
+
 REPORT = so.Report(("tilt",), history=("twist",), samples=3)
 
 
@@ -65,7 +67,9 @@ def other(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("name", ["tilt", "twist_history", "steps", "ended", "start", "seal"])
-@pytest.mark.parametrize("damage", ["gone", "empty", "short", "zeros", "one bit", "folder", "pipe"])
+@pytest.mark.parametrize(
+    "damage", ["gone", "empty", "short", "zeros", "one bit", "folder", "pipe", "vast"]
+)
 def test_what_is_damaged_is_flown_again_and_said(
     stored: Path, whole: so.Ensemble, tmp_path: Path, name: str, damage: str
 ) -> None:
@@ -78,6 +82,8 @@ def test_what_is_damaged_is_flown_again_and_said(
     elif damage in ("folder", "pipe"):
         file.unlink()
         (file.mkdir if damage == "folder" else lambda: os.mkfifo(file))()
+    elif damage == "vast":
+        os.truncate(file, VAST)
     elif damage == "one bit":
         file.write_bytes(bytes([content[0] ^ 16]) + content[1:])
     else:
@@ -85,12 +91,31 @@ def test_what_is_damaged_is_flown_again_and_said(
             {"empty": b"", "short": content[:-8], "zeros": bytes(len(content))}[damage]
         )
     if (name, damage) == ("seal", "gone"):
-        same(flown(store), whole)  # one that was not finished
+        with pytest.warns(so.SomersaultWarning, match="1 chunk has its data but no seal in .* is"):
+            same(flown(store), whole)
     else:
         with pytest.raises(so.SomersaultError, match="1 of its 16 chunks"):
             so.Ensemble.open(store)
         with pytest.warns(so.SomersaultWarning, match="1 chunk was damaged in .* is run again"):
             same(flown(store), whole)
+    same(so.Ensemble.open(store), whole)
+
+
+@pytest.mark.parametrize(
+    "folder",
+    ["tilt", "tilt/c", "tilt/c/0", "twist_history/c/0/1", "start/c", "rate", "rate/c",
+     "seal", "seal/c", "seal/c/0", "seal/c/0/1"],
+)  # fmt: skip
+def test_a_file_where_a_folder_was(
+    stored: Path, whole: so.Ensemble, tmp_path: Path, folder: str
+) -> None:
+    store = tmp_path / "s.zarr"
+    shutil.copytree(stored, store)
+    shutil.rmtree(store / folder)
+    (store / folder).write_text("hi")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", so.SomersaultWarning)
+        same(flown(store), whole)
     same(so.Ensemble.open(store), whole)
 
 
@@ -117,6 +142,24 @@ def test_a_chunk_that_is_whole_but_not_in_its_place(
         same(flown(store), whole)
 
 
+@pytest.mark.parametrize("data", ["there", "gone"])
+def test_seals_that_were_lost_are_said_if_the_data_are_there(
+    stored: Path, whole: so.Ensemble, tmp_path: Path, data: str
+) -> None:
+    store = tmp_path / "s.zarr"
+    shutil.copytree(stored, store)
+    shutil.rmtree(store / "seal/c/0")
+    if data == "gone":  # as a program leaves them that is killed while it writes chunks
+        for file in (store / "tilt/c/0").iterdir():
+            file.unlink()
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always", so.SomersaultWarning)
+        same(flown(store), whole)
+    note = f"8 chunks have their data but no seal in {store}, and are run again"
+    assert [str(w.message) for w in said] == ([note] if data == "there" else [])
+    same(so.Ensemble.open(store), whole)
+
+
 def test_a_whole_variable_may_be_lost(stored: Path, whole: so.Ensemble, tmp_path: Path) -> None:
     store = tmp_path / "s.zarr"
     shutil.copytree(stored, store)
@@ -141,12 +184,16 @@ def test_metadata_are_mended(stored: Path, whole: so.Ensemble, tmp_path: Path, f
     assert said.read_text() == content
 
 
+@pytest.mark.parametrize("damage", ["another's", "vast"])
 def test_coordinates_are_mended(
-    stored: Path, other: Path, whole: so.Ensemble, tmp_path: Path
+    stored: Path, whole: so.Ensemble, tmp_path: Path, damage: str
 ) -> None:
     store = tmp_path / "s.zarr"
     shutil.copytree(stored, store)
-    (store / "rate/c/0").write_bytes((store / "start/c/0").read_bytes()[: 2 * 8 + 4])
+    if damage == "vast":
+        os.truncate(store / "rate/c/0", VAST)
+    else:
+        (store / "rate/c/0").write_bytes((store / "start/c/0").read_bytes()[: 2 * 8 + 4])
     with pytest.raises(so.SomersaultError, match="its coordinates are damaged"):
         so.Ensemble.open(store)
     with pytest.warns(so.SomersaultWarning, match=r"damaged \(what it says of .*rate"):

@@ -210,6 +210,9 @@ OPTIONS = [
     (("--threads", "-1"), ("threads",)),
     (("--chunk", "many"), ("--chunk",)),
     (("--workers", "1", "--scheduler", "tcp://127.0.0.1:1"), ("workers", "scheduler")),
+    (("--tls-ca", "ca.pem"), ("--tls-ca", "--scheduler")),
+    (("--tls-ca", "a", "--tls-cert", "b", "--tls-key", "c"), ("--tls-key", "--scheduler")),
+    (("--tls-ca", "ca.pem", "--scheduler", "tls://a:1"), ("--tls-cert", "give both")),
     (("--plot", "map.doc"), ("map.doc", ".png or .svg")),
 ]
 

@@ -63,3 +63,62 @@ def test_what_was_written_is_said(
     assert capsys.readouterr().out == "simplest\n  equations: a.tex\n"
     assert main(["equations", "simplest"]) == 0
     assert capsys.readouterr().out == Path("a.tex").read_text()
+
+
+MANY = FLIGHT + '[vary.leant]\nadds_to = "takeoff.tilt"\nnormal = [0.0, 0.1]\n[sample]\nsize = 9\n'
+
+
+@pytest.mark.parametrize(
+    ("outputs", "says"),
+    [
+        (["--plot", "p.png", "--landings", "p.png"], "p.png is to be written twice"),
+        (["--plot", "p.png", "--landings", "new/../p.png"], "p.png is to be written twice"),
+        (["--out", "new", "--plot", "new/x.png"], "new/x.png would be inside of new"),
+        (["--out", "link/s.zarr", "--plot", "s.zarr/x.png"], "s.zarr/x.png would be inside of"),
+        (["--out", "old/inner.zarr"], "old/inner.zarr would be inside of"),
+        (["--out", "old/tilt/inner.nc"], "old/tilt/inner.nc would be inside of"),
+        (["--out", "old", "--plot", "old/x.png"], "old/x.png would be inside of"),
+        (["--out", "link/old/inner.zarr"], "inner.zarr would be inside of"),
+    ],
+)
+def test_outputs_do_not_replace_each_other(
+    outputs: list[str],
+    says: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What is refused is refused before anything is written."""
+    monkeypatch.chdir(tmp_path)
+    Path("many.toml").write_text(MANY)
+    Path("link").symlink_to(".")
+    (tmp_path / "old" / "tilt").mkdir(parents=True)
+    (tmp_path / "old" / "zarr.json").write_text("{}")
+    before = sorted(tmp_path.rglob("*"))
+    assert main(["ensemble", "many.toml", *outputs]) == 2
+    said = capsys.readouterr().err
+    assert says in said
+    assert said.count("\n") == 1
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_outputs_of_one_motion_do_not_replace_each_other(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Their endings differ; links do not."""
+    monkeypatch.chdir(tmp_path)
+    Path("a.html").symlink_to("a.gif")
+    Path("a.toml").write_text(FLIGHT)
+    assert main(["fly", "a.toml", "--video", "a.gif", "--page", "a.html"]) == 2
+    assert "a.html is to be written twice" in capsys.readouterr().err
+
+
+def test_outputs_beside_a_store_are_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("many.toml").write_text(MANY)
+    for _ in range(2):  # the second time the store is there
+        outputs = ["--out", "s.zarr", "--plot", "s.zarr/../p.png"]
+        assert main(["ensemble", "many.toml", *outputs]) == 0
+    assert Path("p.png").is_file()

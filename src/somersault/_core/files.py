@@ -9,7 +9,7 @@ import shutil
 import stat
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from somersault._core.errors import SomersaultError
@@ -51,7 +51,13 @@ def temporary_folder(parent: Path | None = None) -> Iterator[Path]:
 
 
 def make_way(path: Path) -> None:
-    """Remove what stands where a file is to be, like a folder or a pipe; a file stays."""
+    """Remove what stands where a file is to be, like a folder or a pipe, or where one of its
+    folders is to be, like a file; a file in its place stays."""
+    for folder in path.parents:  # nearest first
+        if folder.is_dir():
+            break
+        with suppress(OSError):  # it is not there; or another program was quicker
+            folder.unlink()
     if path.is_dir() and not path.is_symlink():
         shutil.rmtree(path)
     elif path.exists() and not path.is_file():

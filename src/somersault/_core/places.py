@@ -21,6 +21,7 @@ _MARKS = {
     ".svg": b"<svg", ".tex": b"\\begin{align*}", ".toml": b"model =", ".webm": b"\x1aE\xdf\xa3",
     ".xml": b"<mujoco", ".mjcf": b"<mujoco",
 }  # fmt: skip
+_OF_ZARR = "zarr.json"  # which every group and array has
 _HEAD = 1024  # bytes
 
 
@@ -60,7 +61,13 @@ def check_folder(path: Any) -> Path:
 
 def _check_room(place: Path, inside: bool = False) -> None:
     """SomersaultError unless a file can be written there, or inside of the folder that is to be
-    there: tried in the nearest folder there is."""
+    there: tried in the nearest folder there is. Nor is any place inside of a Zarr store."""
+    for above in Path(os.path.realpath(place)).parents:
+        if os.path.isfile(above / _OF_ZARR):  # which, unlike pathlib, takes any name
+            raise SomersaultError(
+                f"{place} would be inside of {above}, a Zarr store, which holds its own files "
+                "alone; give a place outside of it"
+            )
     try:
         file = place.absolute() / "x" if inside else place.absolute()
         missing, folder = [file.name], file.parent

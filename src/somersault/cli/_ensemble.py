@@ -13,6 +13,7 @@ from somersault.cli._outputs import (
     PICTURES,
     Writing,
     check_apart,
+    check_distinct,
     save_picture,
     written_lines,
 )
@@ -87,6 +88,7 @@ def run(chosen: argparse.Namespace) -> None:
     if chosen.landings is not None:
         check_file(chosen.landings, (".png",))
     whole = chosen.out is not None and check_out(chosen.out)  # written in one piece, at the end
+    check_distinct(chosen.out, chosen.plot, chosen.landings)
     check_apart(chosen.spec, chosen.out, chosen.plot, chosen.landings)
     spec = read_ensemble(chosen.spec)
     flown = carried_out(
@@ -126,6 +128,11 @@ def _security(chosen: argparse.Namespace) -> Any:
 
     if chosen.tls_ca is None and chosen.tls_cert is None and chosen.tls_key is None:
         return None
+    if chosen.scheduler is None:
+        raise SomersaultError(
+            "--tls-ca, --tls-cert and --tls-key go with --scheduler; give its address, tls://…, "
+            "or leave them out"
+        )
     if chosen.tls_ca is None or chosen.tls_cert is None:
         raise SomersaultError("--tls-ca and --tls-cert go together; give both, and --tls-key")
     return tls_files(chosen.tls_ca, chosen.tls_cert, chosen.tls_key)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import combinations, permutations
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -36,6 +37,20 @@ def require_other(output: Path, inputs: Iterable[Path]) -> None:
         for file in inputs:
             if os.path.exists(file) and os.path.samefile(file, output):
                 raise SomersaultError(f"{output} is read here; give what is written another name")
+
+
+def check_distinct(*outputs: Path | None) -> None:
+    """SomersaultError where one output would replace another, or be inside of it."""
+    given = [output for output in outputs if output is not None]
+    for one, other in combinations(given, 2):
+        if os.path.realpath(one) == os.path.realpath(other):
+            raise SomersaultError(f"{other} is to be written twice; give each output its own name")
+    for one, other in permutations(given, 2):
+        if Path(os.path.realpath(one)) in Path(os.path.realpath(other)).parents:
+            raise SomersaultError(
+                f"{other} would be inside of {one}, which is written too; give a place outside of "
+                "it"
+            )
 
 
 def _texts(value: Any) -> Iterator[str]:
@@ -111,6 +126,7 @@ def check_motion_outputs(chosen: argparse.Namespace) -> None:
         from somersault.view import check_page
 
         check_page(chosen.page)
+    check_distinct(chosen.out, chosen.video, chosen.page)
 
 
 def write_motion(

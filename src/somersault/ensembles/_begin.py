@@ -51,12 +51,8 @@ def write_anew(path: Path, plan: Plan, chunks: Chunks, names: list[str] | None) 
 
 
 def _replace(source: Path, target: Path) -> None:
-    for folder in (target.parent, *target.parent.parents):  # nearest first, as far as the store
-        if folder.is_dir():
-            break
-        folder.unlink(missing_ok=True)  # a file where a folder was
-    target.parent.mkdir(parents=True, exist_ok=True)
     make_way(target)
+    target.parent.mkdir(parents=True, exist_ok=True)
     os.replace(source, target)
 
 

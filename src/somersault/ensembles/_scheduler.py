@@ -137,6 +137,11 @@ def connected(address: str, security: Security | None) -> Client:
     except ssl.SSLError as trouble:
         raise SomersaultError(_untrusted(address, trouble)) from None
     except Exception as trouble:  # every kind of address has its own
+        if _wants_tls(address):
+            raise SomersaultError(
+                f"what answers at {address!r} speaks TLS; write tls:// in front, and give "
+                f"{_CERTIFICATES}"
+            ) from None
         raise SomersaultError(
             f"no scheduler answers at {address!r} ({type(trouble).__name__}); start one with "
             "'dask scheduler' and give its address, like tcp://127.0.0.1:8786 (tls:// if it has "
@@ -160,6 +165,25 @@ def _try(address: str, security: Security) -> None:
         if scheme == "tls":
             with _context(security).wrap_socket(line) as safe:
                 safe.recv(1)  # a scheduler greets; only now does TLS 1.3 say what it thinks of us
+
+
+def _wants_tls(address: str) -> bool:
+    """Whether what answers at an address in the clear would rather speak TLS."""
+    from distributed.comm.addressing import parse_address, parse_host_port
+
+    asking = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    asking.check_hostname, asking.verify_mode = False, ssl.CERT_NONE  # nothing is told to it
+    try:
+        scheme, place = parse_address(address)
+        if scheme != "tcp":
+            return False
+        with socket.create_connection(parse_host_port(place, _PORT), _PATIENCE) as line:
+            asking.wrap_socket(line).close()
+    except ssl.SSLError as trouble:
+        return "ALERT" in (trouble.reason or "")  # which says in TLS that it wants a certificate
+    except (OSError, ValueError):
+        return False
+    return True
 
 
 def _context(security: Security) -> ssl.SSLContext:

@@ -1,17 +1,21 @@
 """Seals: what shows that a chunk on disk is whole, in its place, and of its specification.
 
 The seal of a chunk is the SHA-256 digest of which ensemble it is of, of its number and of the bytes
-of its files. It is written when they are all there, so a chunk without one is merely not finished;
-one whose seal does not fit is damaged, whatever it was that changed.
+of its files. It is written when they are all there, so a chunk without one is merely not finished,
+unless all its files are there: then the seal was lost. One whose seal does not fit is damaged,
+whatever it was that changed.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
+import math
+import os
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from enum import Enum, auto
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +25,16 @@ from somersault.ensembles._chunks import Chunks
 from somersault.ensembles._plan import OVER_TIME, SAMPLE, SEAL, Plan, digest_of
 
 SEAL_BYTES = hashlib.sha256().digest_size
+
+
+class State(Enum):
+    """What can be said of a chunk by its files."""
+
+    FINISHED = auto()
+    DAMAGED = auto()
+    UNSEALED = auto()
+    """It has all its files, and no seal: that was lost, or the program was killed before it."""
+    UNFINISHED = auto()
 
 
 @dataclass(frozen=True)
@@ -36,6 +50,8 @@ class Seals:
     """The variables that have samples over time, all in the same chunk."""
     drawn: tuple[str, ...]
     """The varied quantities along `sample`, which the first chunk of some samples brings."""
+    samples: int
+    """How many samples over time there are, 0 without any."""
 
     def files(self, k: int) -> Iterator[Path]:
         """The files that chunk k writes, but for its seal."""
@@ -53,39 +69,46 @@ class Seals:
         return self.path.joinpath(SEAL, "c", *map(str, self.chunks.place(k)), "0")
 
     def make_way(self, k: int) -> None:
-        """Remove folders and pipes that stand where files of chunk k are to be."""
+        """Remove what else stands where files of chunk k and their folders are to be."""
         for file in (*self.files(k), self.seal_file(k)):
             make_way(file)
 
     def seal(self, k: int) -> bytes:
         """The seal that fits chunk k as its files are now; OSError where one is missing."""
         digest = hashlib.sha256(f"{self.of} {k}".encode())
+        most = most_bytes(math.prod(self.chunks.shape) * max(self.samples, 1))
         for file in self.files(k):
-            content = read_bytes(file)
+            content = read_bytes(file, most)
             digest.update(f" {len(content)} ".encode())
             digest.update(content)
         return digest.digest()
 
-    def check(self) -> tuple[set[int], set[int]]:
-        """Numbers of the chunks that are finished, and of those that are damaged."""
+    def check(self) -> dict[State, set[int]]:
+        """Numbers of the chunks in each state."""
+        found: dict[State, set[int]] = {state: set() for state in State}
         with ThreadPoolExecutor(cores()) as pool:  # reading and digesting release the interpreter
-            states = dict(enumerate(pool.map(self._fits, range(len(self.chunks)))))
-        return {k for k, fits in states.items() if fits}, {
-            k for k, fits in states.items() if fits is False
-        }
+            for k, state in enumerate(pool.map(self._state, range(len(self.chunks)))):
+                found[state].add(k)
+        return found
 
-    def _fits(self, k: int) -> bool | None:
-        """Whether chunk k fits its seal; None where it has none yet."""
+    def _state(self, k: int) -> State:
         try:
-            sealed = read_bytes(self.seal_file(k))
+            sealed = read_bytes(self.seal_file(k), SEAL_BYTES + 1)
         except FileNotFoundError:
-            return None
+            there = all(map(os.path.isfile, self.files(k)))
+            return State.UNSEALED if there else State.UNFINISHED
         except OSError:
-            return False
+            return State.DAMAGED
         try:
-            return sealed == self.seal(k)
+            return State.FINISHED if sealed == self.seal(k) else State.DAMAGED
         except OSError:
-            return False
+            return State.DAMAGED
+
+
+def most_bytes(values: int) -> int:
+    """How much of the file of so many values is read: more than it has if it is whole, so that a
+    file that has grown, however large, does not fit and takes no memory."""
+    return 8 * values + 64  # numbers of at most 8 bytes, and a checksum
 
 
 def brings_samples(chunks: Chunks, k: int) -> bool:
@@ -103,6 +126,7 @@ def seals_of_plan(path: Path, plan: Plan, chunks: Chunks) -> Seals:
         tuple(plan.variables),
         tuple(name for name, v in plan.variables.items() if v.over_time),
         tuple(plan.along_samples),
+        len(plan.simulation.times),
     )
 
 
@@ -127,4 +151,5 @@ def seals_of_store(path: Path, metadata: dict[str, Any]) -> Seals:
         variables,
         over_time,
         tuple(attributes.get("coordinates", "").split()),
+        arrays[OVER_TIME]["shape"][0] if OVER_TIME in arrays else 0,
     )
