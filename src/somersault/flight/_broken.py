@@ -67,7 +67,7 @@ def _ran_away(flight: Flight) -> str:
         )
     if gone:
         return (
-            f"joints have run away, beyond {_AWAY:g} rad or m: {listed(gone)}; drive them with less "
-            "torque, or give them dampers"
+            f"joints have run away, beyond {_AWAY:g} rad or m: {listed(gone)}; drive them with "
+            "less torque, or give them dampers"
         )
     return ""
