@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
 import somersault as so
 from somersault import (
@@ -1125,6 +1126,18 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     ),
     "view.root_loci": lambda: (view.root_loci, {"loci": locus()}),
     "view.stability_chart": lambda: (view.stability_chart, {"chart": charted()}),
+    "view.strip": lambda: (
+        view.strip,
+        {
+            "ax": Figure().subplots(),
+            "history": flown(),
+            "times": [0.0, 0.05],
+            "columns": 2,
+            "view": (35.0, 12.0),
+            "words": True,
+            "size": 1.0,
+        },
+    ),
     "view.time_histories": lambda: (view.time_histories, {"history": flown(), "title": ""}),
     # --- robots
     **{

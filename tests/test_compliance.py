@@ -18,7 +18,8 @@ from trees import InMujoco, State, random_tree, to_mujoco, unit
 
 import somersault as so
 from somersault import JointTakeoff, SomersaultError, Takeoff
-from somersault.flight import ENDINGS, Batch
+from somersault.flight import ENDINGS
+from somersault.flight._batch import Batch
 from somersault.model import Model
 
 NAMES = [joint.name for joint in GYMNAST.joints]

@@ -71,7 +71,8 @@ def test_the_share_that_ended_so() -> None:
     takeoff = so.Takeoff(tilt=0.01, spin=8.64, joints={"shoulder": shoulder})
     vary = {"arm": so.Vary(sets="joints.shoulder.angle", values=[0.5, 1.4, 2.0])}
     vary["leant"] = so.Vary(adds_to="joints.shoulder.angle", samples=[0.0, 0.01, 9.0])
-    found = so.ensemble("furrer", takeoff, 3.0, vary, until="quarter twist")
+    with pytest.warns(so.SomersaultWarning, match="3 of 9 flights could not begin"):
+        found = so.ensemble("furrer", takeoff, 3.0, vary, until="quarter twist")
     ended = found.dataset["ended"].values
     for word in ("duration", "event", "no takeoff"):
         code = so.flight.ENDINGS.code(word)

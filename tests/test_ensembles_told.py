@@ -132,7 +132,8 @@ def test_a_flight_without_a_takeoff_is_struck_out_and_disturbs_no_neighbour() ->
         }
         return so.ensemble("furrer", takeoff, 0.5, vary, report=report).dataset
 
-    made = flown(np.ones(6, bool))
+    with pytest.warns(so.SomersaultWarning, match="4 of 6 flights could not begin"):
+        made = flown(np.ones(6, bool))
     assert [ENDINGS.words[k] for k in made.ended.values] == [
         "duration" if g else "no takeoff" for g in good
     ]
@@ -246,3 +247,15 @@ def test_a_slide_has_units_of_its_own(tmp_path: Path) -> None:
         vary = {"x": so.Vary(adds_to=f"joints.rail.{what}", values=[0.0])}
         made = so.ensemble(str(file), takeoff, 0.01, vary, report=["somersault"]).dataset
         assert made.x.attrs["units"] == unit
+
+
+def test_flights_that_could_not_begin_are_noted_in_words() -> None:
+    """Where the third time of an arm's move is varied, it often comes before the second."""
+    vary = {"t": so.Vary(adds_to="joints.left_shoulder_abduction.times.2", normal=[0.0, 1.0])}
+    with pytest.warns(so.SomersaultWarning, match="could not begin") as said:
+        found = so.ensemble(so.arm_tilt(), vary=vary, size=40, report=["twist"])
+    lost = int(found.fraction(ended="no takeoff").fraction * 40)
+    assert 0 < lost < 40
+    assert [str(one.message).partition(":")[0] for one in said] == [
+        f"{lost} of 40 flights could not begin (no takeoff)"
+    ]

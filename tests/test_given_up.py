@@ -12,6 +12,7 @@ import pytest
 
 import somersault as so
 from somersault.cli import main
+from somersault.flight import _flown
 from somersault.flight._lock import aligned
 
 RUDI = json.loads((files("somersault.thesis.ch6") / "rudi.json").read_text())
@@ -70,6 +71,29 @@ def test_a_stiff_spring_is_no_gimbal_lock(
     said = capsys.readouterr().err
     assert "too stiff" in said
     assert "gimbal" not in said
+
+
+def test_a_negative_spring_that_drives_joints_away_is_named() -> None:
+    """And no stiff spring is blamed, which would be made softer in vain."""
+    arms = {"shoulder": so.JointTakeoff.sprung(0.3, stiffness=-3000.0)}
+    with pytest.warns(so.SomersaultWarning) as said:
+        so.fly("furrer", so.Takeoff(spin=8.0, joints=arms), 1.0, steps=2000, samples=2)
+    words = [str(one.message) for one in said]
+    drives = [one for one in words if one.startswith("joint ")]
+    assert [one.split()[1] for one in drives] == ["left_shoulder", "right_shoulder"]  # each once
+    assert len(words) == 3
+    assert "negative stiffness have driven joints away" in words[-1]
+    assert "left_shoulder (-3000), right_shoulder (-3000)" in words[-1]
+    assert "too stiff" not in words[-1]
+
+
+def test_a_joint_that_a_torque_drives_away_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its turns are still not counted finely enough after the last refinement."""
+    monkeypatch.setattr(_flown, "_MOST_REFINEMENTS", 6)
+    arm = so.JointTakeoff("torque", angle=0.3, times=[0.0, 1.0], torques=[1e9 - 1] * 2)
+    with pytest.warns(so.SomersaultWarning, match="have run away.*: left_shoulder; drive them"):
+        flight = so.fly("furrer", so.Takeoff(spin=8.0, joints={"left_shoulder": arm}), steps=2000)
+    assert flight.ended == "too many steps"
 
 
 def test_samples_and_turns_are_not_counted_as_steps() -> None:

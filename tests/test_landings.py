@@ -77,3 +77,10 @@ def test_derivatives_of_a_steady_spin_are_known():
 def test_what_is_refused(call, said):
     with pytest.raises(so.SomersaultError, match=said):
         call(so.Maneuver(so.load("book"), so.Takeoff(spin=6.0), 0.1))
+
+
+@pytest.mark.parametrize("call", [landing_map, landing_derivatives])
+@pytest.mark.parametrize("wrong", ["furrer", None, 3])
+def test_what_is_no_maneuver_is_refused(call, wrong):
+    with pytest.raises(so.SomersaultError, match=r"maneuver must be a somersault\.Maneuver"):
+        call(wrong)

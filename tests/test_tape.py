@@ -9,7 +9,7 @@ import pytest
 from test_prescribed import GYMNAST, SECONDS, prescribed
 
 import somersault as so
-from somersault.flight import Batch
+from somersault.flight._batch import Batch
 from somersault.flight._layout import PATH
 from somersault.motion import TAPE_DEGREE
 

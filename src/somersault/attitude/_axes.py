@@ -43,7 +43,8 @@ def as_axes(axes: Any) -> Axes:
     """
     if isinstance(axes, tuple) and axes in _ORDERS and all(type(k) is int for k in axes):
         return axes  # quickly, as they nearly always are
-    given = tuple(axes) if isinstance(axes, Sequence | np.ndarray) else ()
+    row = isinstance(axes, Sequence) or (isinstance(axes, np.ndarray) and axes.ndim == 1)
+    given = tuple(axes) if row else ()
     if not all(isinstance(k, int | np.integer) and not isinstance(k, bool) for k in given) or (
         given not in _ORDERS
     ):

@@ -38,6 +38,7 @@ def c_code(model: Model) -> str:
     -------
     str
     """
+    instance("model", model, Model)
     equations = Equations(model)
     names = [n for n in Equations.QUANTITIES if model.free or n != "inertia"]
     generator = ca.CodeGenerator("somersault_equations.c", {"with_header": False})

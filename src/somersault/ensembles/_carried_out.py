@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from somersault._core.checks import instance, text, truth, whole_number
 from somersault._core.errors import SomersaultError
 from somersault._core.notes import note
+from somersault._core.stages import stage
 from somersault.ensembles import _run, _store
 from somersault.ensembles._begin import create
 from somersault.ensembles._chunks import Chunks, chunked
@@ -84,7 +85,8 @@ def carried_out(
             check_scheduler(scheduler, security)
         create(file, plan, chunks)
         chunks = _store.resume(file, plan)  # which another program may have made meanwhile
-    done = _store.finished(file, plan, chunks)
+    with stage(f"looking at {len(chunks):,} chunks of the store"):
+        done = _store.finished(file, plan, chunks)
     left = [k for k in range(len(chunks)) if k not in done]
     if left:
         _store.note_processor(file)
@@ -103,7 +105,7 @@ def _run_chunks(
     shown: bool,
 ) -> None:  # fmt: skip
     remaining = sum(map(chunks.size, left))
-    with _run.progress_bar(plan.count, plan.count - remaining, shown) as advance:
+    with _run.progress(plan.count, plan.count - remaining, shown) as advance:
         if left and (workers is not None or scheduler is not None):
             from somersault.ensembles._cluster import on_cluster
 

@@ -168,15 +168,18 @@ def _refuse(given: Mapping[str, Any], why: str) -> None:
 
 
 def _warn_of_failures(planned: Plan, found: Ensemble) -> None:
-    """Warn of runs that failed although they could begin."""
+    """Warn of runs that failed, and of those that could not even begin."""
     from somersault.ensembles._summary import endings
 
     known = planned.simulation.endings
-    lost = {
-        word: count
-        for word, count in endings(found.dataset).items()
-        if word in known.failed and word != known.unsound
-    }
+    lost = {word: n for word, n in endings(found.dataset).items() if word in known.failed}
+    if unsound := lost.pop(known.unsound, 0):
+        note(
+            f"{unsound:,} of {planned.count:,} flights could not begin ({known.unsound}): what is "
+            "varied gave them numbers that no flight can have, like times of a move out of order, "
+            "angles beyond a joint's limits or a mass that is not positive; what they report is "
+            "NaN, and counts as failed"
+        )
     if lost:
         reasons = ", ".join(f"{word}: {count:,}" for word, count in lost.items())
         note(

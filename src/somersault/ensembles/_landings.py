@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from somersault._core.checks import name_list
+from somersault._core.checks import instance, name_list
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 from somersault.ensembles._ensemble import ensemble
@@ -44,7 +44,7 @@ def landing_map(
     Raises
     ------
     SomersaultError
-        For a span that is not positive, and whatever `ensemble` refuses.
+        For what is no maneuver, a span that is not positive, and whatever `ensemble` refuses.
 
     Examples
     --------
@@ -54,6 +54,7 @@ def landing_map(
     >>> float(lands.dataset.landing_error[1, 1]) < 1e-5
     True
     """
+    instance("maneuver", maneuver, Maneuver)
     if number("span", span) <= 0:
         raise SomersaultError(f"span {span:g} rad is none; give a positive angle")
     grid = {"from": -span, "to": span, "count": points}
@@ -96,7 +97,7 @@ def landing_derivatives(
     Raises
     ------
     SomersaultError
-        For a step that is not positive, and whatever `ensemble` refuses.
+        For what is no maneuver, a step that is not positive, and whatever `ensemble` refuses.
 
     Examples
     --------
@@ -108,6 +109,7 @@ def landing_derivatives(
     """
     import xarray as xr
 
+    instance("maneuver", maneuver, Maneuver)
     landing, takeoff = name_list("of", of), name_list("to", to)
     if not landing or not takeoff:
         raise SomersaultError("of and to name nothing; name what is looked at, and what is changed")

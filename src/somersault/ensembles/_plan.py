@@ -108,8 +108,8 @@ class Plan:
         -------
         dict of str to ndarray, (last − first,)
         """
-        first = whole_number("first", first, 0, self.count)
-        last = whole_number("last", last, first, self.count)
+        first = whole_number("first", first, 0, self.count - 1)
+        last = whole_number("last", last, first + 1, self.count)
         dims = self.dims
         at = dict(
             zip(dims, np.unravel_index(np.arange(first, last), tuple(dims.values())), strict=True)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from itertools import islice
 
 from somersault._core.array import Array
+from somersault._core.notes import note
 from somersault._core.stages import stage
 from somersault.engine import Stop, cores, use_threads
 from somersault.ensembles._chunks import Chunks
@@ -16,6 +18,8 @@ from somersault.ensembles._plan import Plan
 Put = Callable[[int, Mapping[str, Array]], None]
 Advance = Callable[[int], None]  # so many more flights are done
 
+_SETTLED = 3.0  # s, before an estimate is worth telling
+_LONG = 3600.0  # s
 _OFTEN = 0.1  # s: not every system ends a wait for an interrupt
 
 
@@ -75,29 +79,64 @@ def _as_done(
 
 
 @contextmanager
-def progress_bar(total: int, done: int, shown: bool) -> Iterator[Advance]:
-    """A bar with rate and time left on standard error, for `total` flights, `done` before."""
-    if not shown or total == done:
+def progress(total: int, done: int, shown: bool) -> Iterator[Advance]:
+    """How far `total` flights are, `done` before: shown as a bar with share, rate and time left on
+    standard error, or noted once if they will take very long."""
+    if total == done:
         yield lambda more: None
-        return
+    elif shown:
+        with _bar(total, done) as advance:
+            yield advance
+    else:
+        yield _Estimate(total - done).advance
+
+
+class _Estimate:
+    """Notes once, when some of so many flights are done, that the rest will take very long."""
+
+    def __init__(self, left: int) -> None:
+        self.left, self.done, self.noted = left, 0, False
+        self.begun = time.monotonic()
+
+    def advance(self, more: int) -> None:
+        self.left, self.done = self.left - more, self.done + more
+        elapsed = time.monotonic() - self.begun
+        remaining = elapsed / self.done * self.left
+        if not self.noted and elapsed > _SETTLED and remaining > _LONG:
+            self.noted = True
+            note(
+                f"{self.left:,} flights are left, which at {self.done / elapsed:,.0f} a second "
+                f"will take about {in_words(remaining)}; fewer of them, or more machines, take less"
+            )
+
+
+def in_words(seconds: float) -> str:
+    """A long time, about."""
+    for unit, size in (("years", 31_557_600), ("days", 86_400), ("hours", 3_600)):
+        if seconds >= 2 * size:
+            return f"{seconds / size:,.0f} {unit}"
+    return f"{seconds / 60:,.0f} minutes" if seconds >= 120 else f"{seconds:,.0f} s"
+
+
+@contextmanager
+def _bar(total: int, done: int) -> Iterator[Advance]:
     from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        Progress,
-        ProgressColumn,
-        Task,
-        TextColumn,
-        TimeRemainingColumn,
-    )
+    from rich.progress import BarColumn, Progress, ProgressColumn, Task, TextColumn
     from rich.text import Text
 
-    class Rate(ProgressColumn):
+    class Left(ProgressColumn):
+        """From the first chunk on, where rich waits for a second one."""
+
         def render(self, task: Task) -> Text:
-            return Text(f"{task.speed:,.0f} flights/s" if task.speed else "")
+            flown, elapsed = task.completed - done, task.elapsed
+            if not flown or not elapsed:
+                return Text("in the first chunk")
+            left = (total - task.completed) * elapsed / flown
+            return Text(f"{flown / elapsed:,.0f}/s, {in_words(left)} left")
 
     with stage(""), Progress(
-        TextColumn("{task.completed:,.0f} of {task.total:,.0f} flights"), BarColumn(), Rate(),
-        TimeRemainingColumn(), console=Console(stderr=True), transient=True,
+        TextColumn("{task.completed:,.0f} of {task.total:,.0f} flights, {task.percentage:.3g} %"),
+        BarColumn(bar_width=10), Left(), console=Console(stderr=True), transient=True,
     ) as bar:  # fmt: skip
         task = bar.add_task("", total=total, completed=done)
         yield lambda more: bar.update(task, advance=more)

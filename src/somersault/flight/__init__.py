@@ -1,7 +1,6 @@
 """Takeoff, flight, landing."""
 
 from somersault.flight._ballistic import BallisticPath
-from somersault.flight._batch import Batch, Begun
 from somersault.flight._broken import BROKEN, why_broken
 from somersault.flight._compliance import compliant, off_nominal, with_momentum
 from somersault.flight._deviation import deviated_flight
@@ -40,8 +39,6 @@ __all__ = [
     "GRAVITY",
     "KEYS",
     "BallisticPath",
-    "Batch",
-    "Begun",
     "Flight",
     "Flights",
     "JointTakeoff",

@@ -10,7 +10,7 @@ flights.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -57,6 +57,21 @@ class Batch:
     def joints(self) -> tuple[JointPlan, ...]:
         """What each joint does."""
         return plans(self.model, self.takeoff)
+
+    def differing_in(self, bodies: tuple[str, ...]) -> Batch:
+        """The same flights, in which these numbers of bodies may differ.
+
+        Parameters
+        ----------
+        bodies : tuple of str
+
+        Returns
+        -------
+        Batch
+        """
+        other = replace(self, bodies=bodies)
+        vars(other)["joints"] = self.joints  # which do the same; what is strange is noted once
+        return other
 
     @cached_property
     def system(self) -> System:

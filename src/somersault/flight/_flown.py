@@ -35,7 +35,7 @@ def flown(
     begun, duration = begun or batch.begun(), batch.duration
     most = _MOST_BYTES // _point_bytes(batch)
     points = _first_points(batch.system, begun.start, np.union1d(times, [0.0, duration]), most)
-    for _ in range(_MOST_REFINEMENTS):
+    for left in reversed(range(_MOST_REFINEMENTS)):
         with stage(f"flying {duration:g} s"):
             solution = begun.solve(points, accuracy, steps + _STEPS_A_POINT * len(points))
         end, status = float(solution.end[0]), float(solution.status[0])
@@ -43,7 +43,7 @@ def flown(
         states = np.concatenate([solution.states[0][before], solution.final])
         moments = np.append(points[before], end)
         parts = _needed(states, batch.model.axes)
-        if np.all(parts <= 1) or len(points) + parts.sum() > most:
+        if not left or np.all(parts <= 1) or len(points) + parts.sum() > most:
             break
         points = np.union1d(_divided(moments, parts), points)
     kept = np.isin(points[before], times)

@@ -210,6 +210,8 @@ def swing(
     whole_number("samples", samples, 2, _MOST_SAMPLES)
     g = numbers("gravity", gravity, 3)
     q0 = pose(model, angles)
+    if q0.ndim != 1:
+        raise SomersaultError("angles of a swing must be one number each; swing from each pose")
     u0 = np.zeros(len(model.speeds))
     for name, rate in spread(model, by_name("rates", rates), mirrored=True).items():
         u0[model.speed_slice(name)] = number(f"rate of {name}", np.asarray(rate)[()])

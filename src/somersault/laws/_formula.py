@@ -14,7 +14,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from somersault._core.checks import text
+from somersault._core.checks import by_name, text
 from somersault._core.errors import SomersaultError
 
 _MOST_CHARACTERS = 2_000
@@ -133,14 +133,15 @@ class Formula:
         SomersaultError
             For a name that is not among them.
         """
+        given = by_name("known", known)
 
         def named(name: str) -> Any:
-            if name not in known:
+            if name not in given:
                 raise SomersaultError(
                     f"the law {self.text!r} has {name}, which is neither a gain nor sensed; there "
-                    f"are {', '.join(known)}"
+                    f"are {', '.join(given)}"
                 )
-            return known[name]
+            return given[name]
 
         return ca.SX(self._value(self._tree, named))
 
@@ -164,6 +165,7 @@ class Formula:
         >>> Formula("k * twist").renamed({"twist": "-twist"}).text
         'k * -twist'
         """
+        others = {name: text(f"names.{name}", x) for name, x in by_name("names", names).items()}
 
         class Renaming(ast.NodeTransformer):
             def visit_Call(
@@ -179,8 +181,8 @@ class Formula:
                 return self._instead(node, node.value)
 
             def _instead(self, node: ast.expr, name: Any) -> ast.AST:
-                if isinstance(name, str) and name in names:
-                    return ast.parse(names[name], mode="eval").body
+                if isinstance(name, str) and name in others:
+                    return ast.parse(others[name], mode="eval").body
                 return node
 
         tree = Renaming().visit(ast.parse(self.text.strip(), mode="eval").body)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
-from somersault._core.checks import by_name, shown, truth
+from somersault._core.checks import by_name, instance, shown, truth
 from somersault._core.degrees import degrees_hint, note_degrees
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import floats, require_together
@@ -34,7 +34,8 @@ def pose(model: Model, angles: Mapping[str, ArrayLike] | None) -> Array:
     Raises
     ------
     SomersaultError
-        For an unknown name, a value that is not finite, or one outside the joint's limits.
+        For what is no model, an unknown name, a value that is not finite, or one outside the
+        joint's limits.
 
     Examples
     --------
@@ -42,6 +43,7 @@ def pose(model: Model, angles: Mapping[str, ArrayLike] | None) -> Array:
     >>> so.model.pose(so.load("furrer"), {"shoulder": 1.4}).tolist()
     [1.4, -1.4]
     """
+    instance("model", model, Model)
     angles = {name: _numbers(name, value) for name, value in by_name("pose", angles).items()}
     given = {n: np.asarray(v) for n, v in spread(model, angles, mirrored=True).items()}
     shape = require_together({f"pose {name}": value.shape for name, value in given.items()})

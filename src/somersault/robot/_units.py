@@ -107,6 +107,12 @@ def similar(control: Control, mass: float, length: float) -> Control:
         for each in fields(numbers):
             powers = _POWERS[unit(table.name, each.name)]
             value = getattr(numbers, each.name)
-            changed[each.name] = value * mass ** powers[0] * length ** powers[1]
+            try:
+                changed[each.name] = value * mass ** powers[0] * length ** powers[1]
+            except OverflowError:
+                raise SomersaultError(
+                    f"no robot is {mass:g} times as heavy and {length:g} times as long as another; "
+                    "give parts of its mass and length"
+                ) from None
         tables[table.name] = replace(numbers, **changed)
     return Control(**tables)

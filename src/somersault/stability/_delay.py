@@ -22,6 +22,7 @@ from somersault._core.numbers import number
 _NODES = 24  # of the spectral method, before roots are polished
 _POLISHES = 20
 _ROUNDING = 1e-9
+_SHORTEST = 1e-9  # delay, in units of 1/Ω
 _MOST_ROOTS = 100
 _MOST_CROSSINGS = 10_000
 
@@ -89,6 +90,8 @@ class DelayedFeedback:
         """
         delay, count = _delay(delay), whole_number("count", count, 1, _MOST_ROOTS)
         p, q = self.polynomials
+        if 0 < delay < _SHORTEST:
+            raise SomersaultError(f"a delay of {delay:g} cannot be told from none; give 0")
         if delay == 0:
             return _sorted(np.roots(np.trim_zeros(p - q, "f")))[:count]
         if abs(self.direct) > _ROUNDING:

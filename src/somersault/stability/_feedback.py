@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import by_name, instance, one_of
+from somersault._core.checks import by_name, instance, one_of, text
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 from somersault.stability._coordinates import coordinates
@@ -62,7 +62,7 @@ def feedback(
     """
     instance("a spin", spin, LinearSpin)
     one_of("commands", commands, _COMMANDED)
-    (part,) = spin.system.parts(coordinate)
+    (part,) = spin.system.parts(text("coordinate", coordinate))
     driven = part.place(coordinate)
     if driven not in part.joints:
         raise SomersaultError(f"{coordinate} is no joint motion; drive one of the joints")

@@ -11,6 +11,7 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.checks import instance, name_list, truth
+from somersault._core.numbers import floats
 from somersault.dynamics import Equations
 from somersault.engine import Kernel
 from somersault.model import Model
@@ -120,6 +121,7 @@ def holding_torques(
     compiled = truth("compiled", compiled)
     instance("model", model, Model)
     parameters = name_list("parameters", parameters)
+    q = np.atleast_2d(floats("q", q, len(model.coordinates)))
     whole = composite_inertia(model, q, parameters, values)
     before, k, after = cycle(model.axes[0])
     axis = np.tile(np.eye(3)[k], (len(q), 1))

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import text, whole_number
-from somersault._core.numbers import numbers
+from somersault._core.checks import shown, text, truth, whole_number
+from somersault._core.errors import SomersaultError
+from somersault._core.numbers import number, numbers
 from somersault.attitude import matrix_from_quaternion
 from somersault.view import _figure as parts
 from somersault.view import style as look
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
     from somersault.history import History
 
+_MOST_COLUMNS = 100
 _VIEW = (35.0, 12.0)  # degrees: from the front, a little to the left and above
 
 
@@ -53,6 +55,11 @@ def contact_sheet(
     -------
     matplotlib.figure.Figure
 
+    Raises
+    ------
+    SomersaultError
+        For what is none of these, with what to give.
+
     Examples
     --------
     >>> import somersault as so
@@ -61,16 +68,16 @@ def contact_sheet(
     >>> picture = contact_sheet(flight, [0.0, 0.2, 0.4], columns=3)
     """
     (history,) = several("history", history, 1, 1)
-    times = numbers("times", times)
-    columns = whole_number("columns", columns, 1, 100)
+    times = _moments(times)
+    columns = whole_number("columns", columns, 1, _MOST_COLUMNS)
     azimuth, elevation = numbers("view", view, 2).tolist()
     rows = -(-len(times) // columns)
     made = look.figure(1.15 * columns, 1.75 * rows + 0.3)
     grid = made.subplots(rows, 1, squeeze=False)[:, 0]
     size = _size(history, times)
     for row, ax in enumerate(grid):
-        shown = times[row * columns : (row + 1) * columns]
-        strip(ax, history, shown, columns, (azimuth, elevation), size=size)
+        part = times[row * columns : (row + 1) * columns]
+        strip(ax, history, part, columns, (azimuth, elevation), size=size)
     if text("title", title):
         made.suptitle(look.literal(title), fontsize=10)
     return made
@@ -100,6 +107,11 @@ def strip(
         Room for each, in m from its centre of mass: as far as any of them reaches, if it is not
         given.
 
+    Raises
+    ------
+    SomersaultError
+        For what is none of these, with what to give.
+
     Examples
     --------
     >>> import somersault as so
@@ -107,9 +119,17 @@ def strip(
     >>> flight, axes = so.fly("furrer", so.Takeoff(spin=8.6), 0.5), Figure().subplots()
     >>> so.view.strip(axes, flight, [0.0, 0.25, 0.5])
     """
+    _require_axes(ax)
+    (history,) = several("history", history, 1, 1)
+    times = _moments(times)
+    truth("words", words)
     model = history.model
-    size = _size(history, times) if size is None else size
-    seen = parts.camera(*view, model.axes)
+    size = _size(history, times) if size is None else number("size", size)
+    if size <= 0:
+        raise SomersaultError(f"size {size:g} m is no room; give a positive distance")
+    azimuth, elevation = numbers("view", view, 2).tolist()
+    seen = parts.camera(azimuth, elevation, model.axes)
+    count = len(times) if columns is None else whole_number("columns", columns, 1, _MOST_COLUMNS)
     for place, moment in enumerate(times):
         k = _nearest(history, moment)
         turn = matrix_from_quaternion(history.base_quaternion[k])
@@ -118,11 +138,25 @@ def strip(
         if words:
             text = _words(history, k)
             look.label(ax, x, -1.12 * size, text, look.GREY, ha="center", va="top", fontsize=7.5)
-    count = columns or len(times)
     ax.set(xlim=(-0.95 * size, (1.7 * count - 0.75) * size))
     ax.set_ylim(-(1.9 if words else 1.1) * size, 1.1 * size)
     ax.set_aspect("equal")
     ax.axis("off")
+
+
+def _require_axes(ax: object) -> None:
+    from matplotlib.axes import Axes
+
+    if not isinstance(ax, Axes):
+        raise SomersaultError(f"ax must be the axes of a Matplotlib figure, and is {shown(ax)}")
+
+
+def _moments(times: Sequence[float] | Array) -> Array:
+    """Times to draw, at least one."""
+    moments = numbers("times", times)
+    if not moments.size:
+        raise SomersaultError("times are none; give at least one of the motion")
+    return moments
 
 
 def _words(history: History, k: int) -> str:

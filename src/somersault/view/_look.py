@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from somersault._core.checks import name_list, shown, truth, whole_number
+from somersault._core.checks import instance, name_list, shown, truth, whole_number
 from somersault._core.errors import SomersaultError
-from somersault._core.numbers import numbers
+from somersault._core.numbers import floats, numbers
 from somersault.history import History
+from somersault.model import Model
 from somersault.view._stage import VECTORS
 
 SMALLEST, LARGEST = 64, 4096  # pixels
@@ -72,7 +73,7 @@ class Look:
         put(self, "camera", (azimuth, elevation))
         for name in ("follow", "charts", "ground"):
             put(self, name, truth(name, getattr(self, name)))
-        names = _row(self.vectors)
+        names = name_list("vectors", _row(self.vectors))
         if unknown := [name for name in names if name not in VECTORS]:
             raise SomersaultError(
                 f"there is no vector {shown(unknown[0])}; give {' or '.join(map(repr, VECTORS))}"
@@ -115,7 +116,9 @@ def several(what: str, given: object, least: int, most: int = _MOST_BESIDE) -> t
     if not least <= len(row) <= most:
         raise SomersaultError(f"{what}: give {least} to {most} of them, not {len(row)}")
     for item in row:
-        if not all(np.all(np.isfinite(getattr(item, name))) for name in _PARTS[1:5]):
+        instance(f"the model of {what}", item.model, Model)
+        parts = [floats(f"{name} of {what}", getattr(item, name)) for name in _PARTS[1:]]
+        if not all(np.all(np.isfinite(part)) for part in parts[:-1]):
             raise SomersaultError(
                 f"a history of {item.model.name} holds numbers that are not finite and cannot be "
                 "drawn; leave out what comes after the flight broke off"
@@ -124,7 +127,12 @@ def several(what: str, given: object, least: int, most: int = _MOST_BESIDE) -> t
 
 
 def _row(given: Any) -> tuple[Any, ...]:
-    return tuple(given) if isinstance(given, Iterable) and not isinstance(given, str) else (given,)
+    if isinstance(given, str):
+        return (given,)
+    try:
+        return tuple(given)
+    except TypeError:  # one thing, or an array of no dimension
+        return (given,)
 
 
 def _size(given: Any) -> tuple[int, int]:

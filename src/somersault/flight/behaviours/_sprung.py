@@ -34,24 +34,23 @@ class Sprung(Moving, motion="sprung"):
     B: float | None = _declared.quantity("1", least=0.0)
 
     def settled(self, joint: Joint) -> JointTakeoff:
-        given = self._checked(joint)
+        plan = super().settled(joint)
+        assert isinstance(plan, Sprung)
         for name, (other, _) in NON_DIMENSIONAL.items():
-            if getattr(given, name) is not None and getattr(given, other) is not None:
+            if getattr(self, name) is not None and getattr(self, other) is not None:
                 raise SomersaultError(
                     f"joint {joint.name} has both {name} and a {other}, which are one thing with "
                     "and without dimension; give one"
                 )
-        if given.hold and given.rest is not None:
+        if plan.hold and plan.rest is not None:
             raise SomersaultError(
                 f"joint {joint.name}: hold is for a sprung joint without a rest of its own"
             )
-        if joint.kind == "ball" and (given.rest is not None or given.hold):
+        if joint.kind == "ball" and (plan.rest is not None or plan.hold):
             raise SomersaultError(
                 f"joint {joint.name} is a ball: it can be locked, free or sprung about the pose it "
                 "is drawn in"
             )
-        plan = super().settled(joint)
-        assert isinstance(plan, Sprung)
         stiffness = joint.stiffness if plan.stiffness is None else plan.stiffness
         at: Any = plan.angle
         rest = at if plan.hold else joint.rest if plan.rest is None else plan.rest
