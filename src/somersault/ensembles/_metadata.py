@@ -16,7 +16,7 @@ from somersault._core.files import read_bytes
 from somersault._core.files import write as write_file
 from somersault.ensembles._labels import FORMAT
 from somersault.ensembles._plan import SEAL
-from somersault.ensembles._seals import State, most_bytes, seals_of_store
+from somersault.ensembles._seals import most_bytes, seals_of_store
 
 GROUP = "zarr.json"
 _MOST_BYTES = 2**28  # of metadata
@@ -97,7 +97,7 @@ def require_whole(path: Path) -> None:
     """SomersaultError where a store that is read without its plan is damaged."""
     metadata = read_metadata(path)
     seals = seals_of_store(path, metadata)
-    damaged = seals.check()[State.DAMAGED]
+    _, damaged = seals.check()
     what = f"{len(damaged)} of its {len(seals.chunks):,} chunks are" if damaged else ""
     if not coordinates_are_whole(path, metadata):
         what = "its coordinates are"

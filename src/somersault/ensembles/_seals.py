@@ -1,9 +1,8 @@
 """Seals: what shows that a chunk on disk is whole, in its place, and of its specification.
 
 The seal of a chunk is the SHA-256 digest of which ensemble it is of, of its number and of the bytes
-of its files. It is written when they are all there, so a chunk without one is merely not finished,
-unless all its files are there: then the seal was lost. One whose seal does not fit is damaged,
-whatever it was that changed.
+of its files. It is written when they are all there, so a chunk without one is merely not finished;
+one whose seal does not fit is damaged, whatever it was that changed.
 """
 
 from __future__ import annotations
@@ -11,11 +10,9 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-import os
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from enum import Enum, auto
 from pathlib import Path
 from typing import Any
 
@@ -25,16 +22,6 @@ from somersault.ensembles._chunks import Chunks
 from somersault.ensembles._plan import OVER_TIME, SAMPLE, SEAL, Plan, digest_of
 
 SEAL_BYTES = hashlib.sha256().digest_size
-
-
-class State(Enum):
-    """What can be said of a chunk by its files."""
-
-    FINISHED = auto()
-    DAMAGED = auto()
-    UNSEALED = auto()
-    """It has all its files, and no seal: that was lost, or the program was killed before it."""
-    UNFINISHED = auto()
 
 
 @dataclass(frozen=True)
@@ -83,26 +70,26 @@ class Seals:
             digest.update(content)
         return digest.digest()
 
-    def check(self) -> dict[State, set[int]]:
-        """Numbers of the chunks in each state."""
-        found: dict[State, set[int]] = {state: set() for state in State}
+    def check(self) -> tuple[set[int], set[int]]:
+        """Numbers of the chunks that are finished, and of those that are damaged."""
         with ThreadPoolExecutor(cores()) as pool:  # reading and digesting release the interpreter
-            for k, state in enumerate(pool.map(self._state, range(len(self.chunks)))):
-                found[state].add(k)
-        return found
+            states = dict(enumerate(pool.map(self._fits, range(len(self.chunks)))))
+        return {k for k, fits in states.items() if fits}, {
+            k for k, fits in states.items() if fits is False
+        }
 
-    def _state(self, k: int) -> State:
+    def _fits(self, k: int) -> bool | None:
+        """Whether chunk k fits its seal; None where it has none yet."""
         try:
             sealed = read_bytes(self.seal_file(k), SEAL_BYTES + 1)
         except FileNotFoundError:
-            there = all(map(os.path.isfile, self.files(k)))
-            return State.UNSEALED if there else State.UNFINISHED
+            return None
         except OSError:
-            return State.DAMAGED
+            return False
         try:
-            return State.FINISHED if sealed == self.seal(k) else State.DAMAGED
+            return sealed == self.seal(k)
         except OSError:
-            return State.DAMAGED
+            return False
 
 
 def most_bytes(values: int) -> int:

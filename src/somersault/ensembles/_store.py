@@ -32,7 +32,7 @@ from somersault.ensembles._metadata import (
     read_metadata,
 )
 from somersault.ensembles._plan import SAMPLE, SEAL, Plan
-from somersault.ensembles._seals import State, brings_samples, seals_of_plan
+from somersault.ensembles._seals import brings_samples, seals_of_plan
 from somersault.simulation import ENDED
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ def _surviving_chunks(path: Path, plan: Plan) -> Chunks:
     shape = chunk_of_array(path / ENDED)
     if shape is not None and len(shape) == len(plan.dims):
         chunks = Chunks(plan.dims, shape)
-        if seals_of_plan(path, plan, chunks).check()[State.FINISHED]:
+        if seals_of_plan(path, plan, chunks).check()[0]:
             return chunks
     raise SomersaultError(
         f"{path / GROUP} is damaged, and nothing else shows that {path} is of this specification; "
@@ -125,15 +125,12 @@ def _difference(theirs: Any, ours: Any, key: str = "") -> str:
 
 
 def finished(path: Path, plan: Plan, chunks: Chunks) -> set[int]:
-    """Numbers of the chunks that are complete and whole; warnings say how many are damaged."""
-    found = seals_of_plan(path, plan, chunks).check()
-    if damaged := len(found[State.DAMAGED]):
-        were, are = ("chunk was", "is") if damaged == 1 else ("chunks were", "are")
-        note(f"{damaged:,} {were} damaged in {path}, and {are} run again")
-    if unsealed := len(found[State.UNSEALED]):
-        have, are = ("chunk has its", "is") if unsealed == 1 else ("chunks have their", "are")
-        note(f"{unsealed:,} {have} data but no seal in {path}, and {are} run again")
-    return found[State.FINISHED]
+    """Numbers of the chunks that are complete and whole; a warning says how many are damaged."""
+    complete, damaged = seals_of_plan(path, plan, chunks).check()
+    if damaged:
+        were, are = ("chunk was", "is") if len(damaged) == 1 else ("chunks were", "are")
+        note(f"{len(damaged):,} {were} damaged in {path}, and {are} run again")
+    return complete
 
 
 def write(path: Path, plan: Plan, chunks: Chunks, k: int, rows: Mapping[str, Array]) -> None:
