@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from pathlib import Path
 from typing import Any
@@ -80,6 +79,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> None:
     """Fly what is left to fly, and print what it all adds up to."""
+    import json
+
     from somersault._core.places import check_file
     from somersault.ensembles import carried_out, check_out, read_ensemble, summary
 

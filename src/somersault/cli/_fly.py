@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -51,6 +50,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> None:
     """Fly, write the history, print how it ended."""
+    import json
+
     from somersault._core.errors import SomersaultError
     from somersault.flight import BROKE_OFF, BROKEN, Maneuver, why_broken
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -54,6 +53,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> None:
     """Print the energies and kinds of motion; draw the map if there is a file for it."""
+    import json
+
     from somersault._core.errors import SomersaultError
     from somersault._core.places import check_file
     from somersault.model import load

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import warnings
 from collections.abc import Sequence
@@ -46,6 +45,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> None:
     """Print the table of what ships, or a page for each model that is named."""
+    import json
+
     from somersault.model import load, shipped, write_mjcf
 
     asked: list[str | Model] = list(chosen.models)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -66,6 +64,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> None:
     """Run, write what is asked for, print how it ended."""
+    import json
+
     from somersault.robot import run_of
 
     check_motion_outputs(chosen)
@@ -79,6 +79,8 @@ def run(chosen: argparse.Namespace) -> None:
 
 
 def _asked_for(chosen: argparse.Namespace) -> Runs:
+    from dataclasses import replace
+
     from somersault.robot import Flip, Robot, Runs, maneuver, read_runs
     from somersault.spec import structured
 

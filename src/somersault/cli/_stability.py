@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import sys
 from typing import TYPE_CHECKING, Any
@@ -60,6 +59,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> None:
     """Print the verdict."""
+    import json
+
     from somersault.stability import spin
 
     steady = spin(chosen.model, chosen.axis, assignments("--pose", chosen.pose))
