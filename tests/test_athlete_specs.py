@@ -159,7 +159,7 @@ def osim(folder: Path) -> Path:
         (["--out", "x.xml"], "and 0 are named"),
         (["furrer", "--out", "x.urdf"], "has another ending than .xml or .mjcf"),
         (["--athlete", "height"], "takes KEY=X"),
-        (["--athlete", "hight=1.75", "mass=70"], "athlete.hight is no key"),
+        (["--athlete", "hight=1.75", "mass=70"], "hight is no key of --athlete"),
     ],
 )
 def test_a_mistake_at_the_shell_is_a_sentence(

@@ -312,7 +312,7 @@ def test_a_contact_sheet_is_the_same_picture(axes: Axes) -> None:
 def test_a_shipped_model_of_other_axes_looks_the_same(axes: Axes) -> None:
     drawn, other = (model_shapes(so.load("furrer", axes=order)) for order in ((2, 1, 3), axes))
     assert drawn == other
-    assert [len(shapes) for shapes in drawn] == [4, 1, 1]
+    assert [len(shapes) for shapes in drawn] == [5, 1, 1]  # the trunk with head, neck and legs
 
 
 @every_order
