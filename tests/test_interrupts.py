@@ -180,8 +180,10 @@ def test_a_command_in_the_background_goes_on(folder: Path) -> None:
 
 
 PYTHON = """
-import _thread, threading
+import _thread, signal, threading
 import somersault as so
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # what starts in the background ignores it
 
 takeoff = so.Takeoff(spin=8.64, tilt=0.01)
 shaking = so.JointTakeoff.sprung(0.3, rest=0.2, stiffness=1e7)
