@@ -14,7 +14,7 @@ from somersault._core.canonical import canonical
 from somersault._core.checks import instance, text
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
-from somersault.robot._control import Control, must_not_be_negative
+from somersault.robot._control import Control, least_of
 from somersault.robot._controller import FELL, RAN_ON, REMEMBERED, Controller
 from somersault.robot._half_twist import HalfTwist
 from somersault.robot._plant import Lane, advance
@@ -148,7 +148,7 @@ class Runs:
         return self
 
     def sound(self, values: Numbers, count: int) -> Array:
-        """Whether each run can begin: no gain, mass or length is negative, and it is in the air.
+        """Whether each run can begin: none of its numbers is too small, and it is in the air.
 
         Parameters
         ----------
@@ -160,9 +160,9 @@ class Runs:
         ndarray of bool, (count,)
         """
         good = np.ones(count, bool)
-        for name, value in values.items():
-            if name in must_not_be_negative():
-                good &= np.asarray(value) >= 0
+        for (table, name), value in values.items():
+            if least := least_of(str(table), str(name)):
+                good &= least.allows(np.asarray(value))
         return good & (np.asarray(values["start", "height"]) > self.robot.shortest)
 
     @property

@@ -1,0 +1,62 @@
+"""What a robot's user can get wrong: numbers of its controller, by all the ways they are given."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import somersault as so
+from somersault import cli
+from somersault.robot import (
+    Control,
+    End,
+    Flip,
+    Plant,
+    Push,
+    Running,
+    Runs,
+    Twist,
+    parse_runs,
+)
+
+TOO_SMALL = {
+    "running.speed_gain": Running(speed_gain=-0.1),
+    "running.thrust_factor": Running(thrust_factor=-1.0),
+    "running.idle_length": Running(idle_length=0.0),
+    "flip.landing_gain": Flip(landing_gain=-1.0),
+    "flip.at": Flip(at=-1.0),
+    "twist.straddle_gain": Twist(straddle_gain=-4.0),
+    "twist.turn_rate": Twist(turn_rate=-1.0),
+    "plant.pitch_inertia": Plant(pitch_inertia=0.0),
+    "push.duration": Push(duration=-0.1),
+    "end.steps_after": End(steps_after=0.0),
+}
+
+
+class TestNumbersTooSmall:
+    @pytest.mark.parametrize("name", TOO_SMALL)
+    def test_are_refused_by_name(self, name: str) -> None:
+        table = name.split(".")[0]
+        with pytest.raises(so.SomersaultError, match=f"^{name} must ") as refused:
+            Control(**{table: TOO_SMALL[name]})  # type: ignore[arg-type]
+        assert "\n" not in str(refused.value)
+
+    @pytest.mark.parametrize("name", TOO_SMALL)
+    def test_cannot_begin_in_an_ensemble(self, name: str) -> None:
+        table, number = name.split(".")
+        values = {**Runs().values, (table, number): getattr(TOO_SMALL[name], number)}
+        assert Runs().sound(Runs().values, 1).tolist() == [True]
+        assert Runs().sound(values, 1).tolist() == [False]
+
+    @pytest.mark.parametrize("name", ["speed", "turn_rate", "foot_offset"])
+    def test_what_may_have_either_sign_may(self, name: str) -> None:
+        assert getattr(Control(running=Running(**{name: -0.5})).running, name) == -0.5
+
+    def test_in_a_spec_and_at_the_shell(
+        self, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        with pytest.raises(so.SomersaultError, match=r"running\.speed_gain must not be negative"):
+            parse_runs({"robot": "biped", "running": {"speed_gain": -0.1}}, tmp_path)
+        assert cli.main(["run", "biped", "--flip", "at=-1"]) == 2
+        assert "flip.at must not be negative" in capsys.readouterr().err
