@@ -60,3 +60,10 @@ class TestNumbersTooSmall:
             parse_runs({"robot": "biped", "running": {"speed_gain": -0.1}}, tmp_path)
         assert cli.main(["run", "biped", "--flip", "at=-1"]) == 2
         assert "flip.at must not be negative" in capsys.readouterr().err
+
+
+def test_lengths_that_no_leg_has_cannot_begin_in_an_ensemble() -> None:
+    vary = {"length": so.Vary(sets="flip.leg_length", values=[0.7, 1.2])}
+    runs = Runs(control=Control(end=End(steps_after=1)), duration=0.5)
+    ended = so.ensemble(runs, vary=vary).dataset["ended"]
+    assert so.ensembles.ended_by(ended, "no start").values.tolist() == [False, True]

@@ -52,6 +52,10 @@ _VARIABLES = {
     "time": Variable("s", words="when the run ended"),
 }
 _LONGEST = 1_000.0  # s
+_LENGTHS = (
+    ("running", "leg_length"), ("running", "idle_length"), ("flip", "leg_length"),
+    ("flip", "held_length"),
+)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +152,7 @@ class Runs:
         return self
 
     def sound(self, values: Numbers, count: int) -> Array:
-        """Whether each run can begin: none of its numbers is too small, and it is in the air.
+        """Whether each run can begin: no number is too small, legs reach, and it is in the air.
 
         Parameters
         ----------
@@ -163,6 +167,9 @@ class Runs:
         for (table, name), value in values.items():
             if least := least_of(str(table), str(name)):
                 good &= least.allows(np.asarray(value))
+        for name in _LENGTHS:
+            length = np.asarray(values[name])
+            good &= (self.robot.shortest <= length) & (length <= self.robot.longest)
         return good & (np.asarray(values["start", "height"]) > self.robot.shortest)
 
     @property
@@ -219,10 +226,7 @@ def _controller(robot: Robot, digest: str, twists: bool) -> Controller:
 
 def _check_lengths(robot: Robot, control: Control) -> None:
     """SomersaultError for a length that no leg of the robot has."""
-    for table, name in (
-        ("running", "leg_length"), ("running", "idle_length"), ("flip", "leg_length"),
-        ("flip", "held_length"),
-    ):  # fmt: skip
+    for table, name in _LENGTHS:
         length = getattr(getattr(control, table), name)
         if not robot.shortest <= length <= robot.longest:
             raise SomersaultError(
