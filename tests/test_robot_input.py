@@ -63,7 +63,11 @@ class TestNumbersTooSmall:
 
 
 def test_lengths_that_no_leg_has_cannot_begin_in_an_ensemble() -> None:
-    vary = {"length": so.Vary(sets="flip.leg_length", values=[0.7, 1.2])}
-    runs = Runs(control=Control(end=End(steps_after=1)), duration=0.5)
-    ended = so.ensemble(runs, vary=vary).dataset["ended"]
+    runs = Runs(control=Control(end=End(steps_after=1)), duration=0.3)
+    drawn = {"length": so.Vary(sets="flip.leg_length", samples=[0.7, 1.2])}
+    with pytest.warns(so.SomersaultWarning, match="1 of 2 runs could not begin"):
+        ended = so.ensemble(runs, vary=drawn, size=2).dataset["ended"]
     assert so.ensembles.ended_by(ended, "no start").values.tolist() == [False, True]
+    grid = {"length": so.Vary(sets="flip.leg_length", values=[0.7, 1.2])}
+    with pytest.raises(so.SomersaultError, match=r"has 1\.2, which ends in 'no start'"):
+        so.ensemble(runs, vary=grid)

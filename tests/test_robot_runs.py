@@ -340,6 +340,8 @@ class TestCommand:
         record = json.loads(capsys.readouterr().out)
         assert record["ended"] == {"ran on": 2}
         assert record["successes"]["fraction"] == 1.0
+        assert cli.main(["ensemble", str(spec)]) == 0
+        assert "biped: 2 runs (torque 2)" in capsys.readouterr().out
 
     @pytest.mark.parametrize(
         ("arguments", "says"),

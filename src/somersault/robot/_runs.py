@@ -167,8 +167,8 @@ class Runs:
         for (table, name), value in values.items():
             if least := least_of(str(table), str(name)):
                 good &= least.allows(np.asarray(value))
-        for name in _LENGTHS:
-            length = np.asarray(values[name])
+        for place in _LENGTHS:
+            length = np.asarray(values[place])
             good &= (self.robot.shortest <= length) & (length <= self.robot.longest)
         return good & (np.asarray(values["start", "height"]) > self.robot.shortest)
 
