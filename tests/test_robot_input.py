@@ -18,6 +18,8 @@ from somersault.robot import (
     Runs,
     Twist,
     parse_runs,
+    run,
+    usual,
 )
 
 TOO_SMALL = {
@@ -71,3 +73,41 @@ def test_lengths_that_no_leg_has_cannot_begin_in_an_ensemble() -> None:
     grid = {"length": so.Vary(sets="flip.leg_length", values=[0.7, 1.2])}
     with pytest.raises(so.SomersaultError, match=r"has 1\.2, which ends in 'no start'"):
         so.ensemble(runs, vary=grid)
+
+
+class TestTimes:
+    """A somersault or a push that is to come when the run is over."""
+
+    @pytest.mark.parametrize("table", ["flip", "push"])
+    @pytest.mark.parametrize("at", [4.0, 9.0, 5e5])
+    def test_are_refused(self, table: str, at: float, tmp_path: Path) -> None:
+        spec = {"robot": "biped", "duration": 4.0, table: {"at": at}}
+        with pytest.raises(so.SomersaultError, match=f"the run is over at 4; make {table}.at less"):
+            parse_runs(spec, tmp_path)
+
+    def test_what_is_never_is_not(self) -> None:
+        assert Runs(duration=4.0).control.flip.at == 1e6
+
+
+def test_a_spec_of_many_runs_is_sent_to_its_command(tmp_path: Path) -> None:
+    spec = {"robot": "biped", "sample": {"size": 4}}
+    with pytest.raises(so.SomersaultError, match=r"\[sample\] .* somersault ensemble"):
+        parse_runs(spec, tmp_path)
+
+
+class TestUsual:
+    def test_the_weighted_robot_runs_on_its_own(self, tmp_path: Path) -> None:
+        """With the lighter one's numbers it falls after five seconds."""
+        ran = run("biped_weighted", 12.0)
+        assert ran.ended == "time over"
+        assert 0.8 < ran.speed[ran.times > 5].mean() < 1.1
+        assert run("biped_weighted", 12.0, Control()).fell
+        for robot in ("biped_weighted", {"model": "biped_weighted"}):
+            assert parse_runs({"robot": robot}, tmp_path).control == usual("biped_weighted")
+
+    def test_a_maneuver_that_is_named_is_taken(self, tmp_path: Path) -> None:
+        spec = {"robot": "biped_weighted", "maneuver": "somersault"}
+        assert parse_runs(spec, tmp_path).control == Control()
+
+    def test_others_have_the_defaults(self) -> None:
+        assert usual("biped") == usual("runner.xml") == Control()

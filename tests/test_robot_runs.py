@@ -348,6 +348,10 @@ class TestCommand:
         [
             (["run", "bipet"], "bipet"),
             (["run", "biped", "--flip", "at=20"], "over at"),
+            (["run", "biped", "--flip", "at=abc"], "KEY=NUMBER"),
+            (["run", "biped", "--flip", "at=abc"], "--flip at=5"),
+            (["run", "biped", "--flip", "torque=100"], "does not say when"),
+            (["run", "who.bioMod"], "MJCF"),
             (["run", "biped", "--flip", "att=2"], "att is no key"),
             (["run", "biped", "--video", "flip.doc"], "another ending"),
             (["run", "biped", "--duration", "-1"], "duration of a run"),

@@ -13,7 +13,7 @@ from somersault.robot._control import (
 )
 from somersault.robot._controller import Controller
 from somersault.robot._leg import Leg
-from somersault.robot._maneuvers import MANEUVERS, maneuver
+from somersault.robot._maneuvers import MANEUVERS, maneuver, usual
 from somersault.robot._robot import Machine, Robot
 from somersault.robot._run import Event, Run, run, run_of
 from somersault.robot._runs import Runs
@@ -52,4 +52,5 @@ __all__ = [
     "run_of",
     "similar",
     "unit",
+    "usual",
 ]

@@ -14,7 +14,7 @@ from somersault._core.canonical import canonical
 from somersault._core.checks import instance, text
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
-from somersault.robot._control import Control, least_of
+from somersault.robot._control import NEVER, Control, least_of
 from somersault.robot._controller import FELL, RAN_ON, REMEMBERED, Controller
 from somersault.robot._half_twist import HalfTwist
 from somersault.robot._plant import Lane, advance
@@ -86,6 +86,13 @@ class Runs:
                 f"duration of a run is up to {_LONGEST:g} s, and here {self.duration:g}; change it"
             )
         _check_lengths(self.robot, self.control)
+        for table, what in (("flip", "somersault"), ("push", "push")):
+            at = getattr(self.control, table).at
+            if self.duration <= at < NEVER:
+                raise SomersaultError(
+                    f"the {what} is to be at {at:g} s, but the run is over at {self.duration:g}; "
+                    f"make {table}.at less, or the duration longer"
+                )
 
     def __getstate__(self) -> dict[str, Any]:
         return {"robot": replace(self.robot), "control": self.control, "duration": self.duration}
