@@ -9,11 +9,13 @@ which of its joints are legs, and takes the 3D Biped's numbers, grown to its siz
 
 from __future__ import annotations
 
+import math
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import somersault as so
-from somersault.robot import Control, Leg, Plant, Robot, Run, run, similar
+from somersault.robot import Control, Leg, Plant, Robot, Run, run, similar, usual
 
 MODEL = Path(__file__).with_name("runner.xml")
 AT = 4.0  # s, when the somersaults are to begin
@@ -41,10 +43,12 @@ def runner_control() -> Control:
 
 def told(title: str, ran: Run) -> None:
     """One line on a run."""
-    turned = round(ran.outcome["landing_somersault"] * 57.3)
-    print(
-        f"{title}: {ran.ended}; landed at {turned}°, {ran.outcome['steps_after']:.0f} steps after"
-    )
+    if math.isnan(ran.outcome["landing_somersault"]):
+        print(f"{title}: {ran.ended} after {ran.outcome['time']:.1f} s, without a landing")
+        return
+    turned = math.degrees(ran.outcome["landing_somersault"])
+    steps = ran.outcome["steps_after"]
+    print(f"{title}: {ran.ended}; landed at {turned:.0f}°, {steps:.0f} steps after")
 
 
 def main(model: str = "biped", at: str = str(AT)) -> None:
@@ -55,7 +59,8 @@ def main(model: str = "biped", at: str = str(AT)) -> None:
         raise so.SomersaultError(f"{at!r} is no time in seconds; give 4, say") from None
     changed = Plant(friction=0.7, stiffness=0.9, torque=0.9)
     told(model, run(model, when + 8, flip=when))
-    told(f"{model}, changed", run(model, when + 8, Control(plant=changed), flip=when))
+    numbers = replace(usual(model), plant=changed)
+    told(f"{model}, changed", run(model, when + 8, numbers, flip=when))
     told("runner", run(runner(), when + 8, runner_control(), flip=when))
 
 

@@ -1176,7 +1176,7 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     "robot.read_runs": lambda: (robot.read_runs, {"path": Path("run.toml")}),
     "robot.run": lambda: (
         robot.run,
-        {"robot": "biped", "duration": 0.1, "control": None, "flip": 5.0, "samples": 100},
+        {"robot": "biped", "duration": 0.1, "control": None, "flip": 0.05, "samples": 100},
     ),
     "robot.run_of": lambda: (
         robot.run_of,
@@ -1187,6 +1187,7 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
         {"control": robot.Control(), "mass": 2.0, "length": 1.2},
     ),
     "robot.unit": lambda: (robot.unit, {"table": "flip", "name": "torque"}),
+    "robot.usual": lambda: (robot.usual, {"model": "biped_weighted"}),
     # --- the thesis
     "thesis.reproduce": lambda: (
         thesis.reproduce,

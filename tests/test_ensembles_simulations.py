@@ -23,6 +23,10 @@ import somersault as so
 from somersault.flight import flights
 from somersault.simulation import Simulation
 
+# Some are given numbers with which they cannot begin.
+pytestmark = pytest.mark.filterwarnings(
+    "ignore:.* runs could not begin:somersault._core.errors.SomersaultWarning"
+)
 SWUNG = {
     "l": so.Vary(sets="pendulum.length", values=[0.5, 1.0, 2.0]),
     "pushed": so.Vary(adds_to="pendulum.angle", normal=[0.0, 0.02]),

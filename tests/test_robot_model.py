@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import mujoco
@@ -10,7 +11,7 @@ import pytest
 from test_shipped_models import SHIPPED
 
 import somersault as so
-from somersault.robot import Robot
+from somersault.robot import Leg, Robot
 
 SIDES = ("left", "right")
 
@@ -163,6 +164,50 @@ BAD = {
     "no free joint": ("<freejoint/>", "", "free joint"),
     "other axes": ('axis="1 0 0" range="-20 20"', 'axis="0 0 1" range="-20 20"', "must be along"),
     "no text": ("<mujoco", "<mujocco", "cannot be read"),
+    "no push": ('kp="60000"', 'kp="-60000"', "left_stop is no stop"),
+    "other leg": (
+        '<position name="left_spring" class="spring" joint="left_leg"/>',
+        '<position name="left_spring" class="spring" joint="right_leg"/>',
+        "left_spring must act on joint left_leg",
+    ),
+    "spring that pulls": (' forcerange="0 20000"', "", "left_spring .* cannot pull"),
+    "stop that pushes": (
+        'forcerange="-20000 0"',
+        'forcerange="-20000 5"',
+        "left_stop .* cannot push",
+    ),
+    "springs unlike": (
+        '<position name="right_spring" class="spring" joint="right_leg"/>',
+        '<position name="right_spring" class="spring" joint="right_leg" kp="9000"/>',
+        "left_spring and right_spring must be alike",
+    ),
+    "no floor": (
+        '<geom name="floor" type="plane" size="0 0 1" contype="1" conaffinity="0" '
+        'rgba="0.8 0.8 0.8 1"/>',
+        "",
+        "touches no floor",
+    ),
+    "no contact": (
+        'contype="2" conaffinity="3"',
+        'contype="2" conaffinity="2"',
+        "touches no floor",
+    ),
+    "sloping floor": (
+        'size="0 0 1" contype="1"',
+        'size="0 0 1" euler="0 5 0" contype="1"',
+        "level",
+    ),
+    "low floor": ('size="0 0 1" contype="1"', 'size="0 0 1" pos="0 0 -1" contype="1"', "level"),
+    "gear": ('ctrlrange="-150 150"', 'ctrlrange="-150 150" gear="2"', "without gear"),
+    "one way": ('ctrlrange="-150 150"', 'ctrlrange="0 150"', "as strong either way"),
+    "weaker": ('ctrlrange="-150 150"', 'ctrlrange="-150 150" forcerange="-20 20"', "weaker than"),
+    "two motors": (
+        '<motor name="left_hip_y"',
+        '<motor name="more" joint="left_hip_y" ctrlrange="-9 9"/><motor name="left_hip_y"',
+        "has 2 motors",
+    ),
+    "weightless": ("<option ", '<option gravity="0 0 0" ', "gravity must be 0 0 -9.81"),
+    "moon": ("<option ", '<option gravity="0 0 -1.62" ', "gravity must be 0 0 -9.81"),
     "step": ('timestep="0.0005"', 'timestep="0.0007"', "timestep"),
 }
 
@@ -178,6 +223,28 @@ def test_bad_robots_are_refused_in_a_sentence(what: str, tmp_path: Path) -> None
         _ = Robot(str(file)).machine
     assert "\n" not in str(refused.value)
     assert "robot.xml" in str(refused.value)
+
+
+def test_files_that_are_no_mjcf(tmp_path: Path) -> None:
+    for ending in (".bioMod", ".urdf", ".osim"):
+        with pytest.raises(so.SomersaultError, match=rf"^who\{ending} is no robot that runs.*MJCF"):
+            Robot(str(tmp_path / f"who{ending}"))
+
+
+def test_legs_that_are_none() -> None:
+    left, right = Leg.called("left"), Leg.called("right")
+    with pytest.raises(so.SomersaultError, match="cannot both have 'left_foot'"):
+        Robot("biped", left, replace(right, foot="left_foot"))
+    with pytest.raises(so.SomersaultError, match="cannot both have"):
+        Robot("biped", left, left)
+    with pytest.raises(so.SomersaultError, match="cannot have 'left_stop' twice"):
+        replace(left, spring="left_stop")
+    swapped = replace(left, spring="left_stop", stop="left_spring")
+    with pytest.raises(so.SomersaultError, match=r"left_stop .* cannot pull"):
+        _ = Robot("biped", swapped, right).machine
+    crossed = [replace(one, hip=other.hip) for one, other in ((left, right), (right, left))]
+    with pytest.raises(so.SomersaultError, match="left_leg does not hang on right_hip_z"):
+        _ = Robot("biped", *crossed).machine
 
 
 def test_lengths_that_no_leg_has() -> None:

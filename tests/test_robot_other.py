@@ -11,7 +11,7 @@ import pytest
 from test_shipped_models import SHIPPED
 
 import somersault as so
-from somersault.robot import Control, Robot, Runs, run, similar, unit
+from somersault.robot import Control, Push, Robot, Runs, run, similar, unit
 from somersault.robot._units import _POWERS
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -89,6 +89,14 @@ def test_a_similar_robot_does_exactly_the_same(tmp_path: Path) -> None:
     )
 
 
+def test_a_robot_that_falls_before_its_somersault_is_told(robots, capsys) -> None:  # type: ignore[no-untyped-def]
+    fallen = run("biped", 2.0, Control(push=Push(at=0.1, sideways=5000.0)), flip=1.0)
+    robots.told("biped", fallen)
+    said = capsys.readouterr().out
+    assert said.startswith("biped: fell before after ")
+    assert said.endswith(" s, without a landing\n")
+
+
 class TestUnits:
     def test_every_number_has_one(self) -> None:
         """And only those without a unit are called pure numbers."""
@@ -115,6 +123,8 @@ class TestUnits:
         back = similar(there, 1 / 3.0, 1 / 1.7)
         for name, value in Control().numbers().items():
             assert back.numbers()[name] == pytest.approx(value, rel=1e-12)
+        never = ("running", "speed_change"), ("flip", "at"), ("push", "at"), ("end", "steps_after")
+        assert all(there.numbers()[name] == 1e6 for name in never)
         assert there.running.speed == pytest.approx(1.7**0.5)
         with pytest.raises(so.SomersaultError, match="must be positive"):
             similar(Control(), -1.0, 1.0)

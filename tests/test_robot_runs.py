@@ -267,7 +267,8 @@ class TestAttempts:
     def test_falls_are_results_and_nonsense_no_start(self) -> None:
         vary = {"torque": so.Vary(sets="flip.torque", values=[0.0, 115.0, 400.0]),
                 "friction": so.Vary(sets="plant.friction", samples=[1.0, -1.0])}  # fmt: skip
-        data = so.ensemble(attempts(), vary=vary, size=2).dataset
+        with pytest.warns(so.SomersaultWarning, match="3 of 6 runs could not begin"):
+            data = so.ensemble(attempts(), vary=vary, size=2).dataset
         words = data["ended"].attrs["flag_meanings"].split()
         ended = [[words[code] for code in row] for row in data["ended"].values]
         assert [row[1] for row in ended] == ["no_start"] * 3
@@ -340,12 +341,18 @@ class TestCommand:
         record = json.loads(capsys.readouterr().out)
         assert record["ended"] == {"ran on": 2}
         assert record["successes"]["fraction"] == 1.0
+        assert cli.main(["ensemble", str(spec)]) == 0
+        assert "biped: 2 runs (torque 2)" in capsys.readouterr().out
 
     @pytest.mark.parametrize(
         ("arguments", "says"),
         [
             (["run", "bipet"], "bipet"),
             (["run", "biped", "--flip", "at=20"], "over at"),
+            (["run", "biped", "--flip", "at=abc"], "KEY=NUMBER"),
+            (["run", "biped", "--flip", "at=abc"], "--flip at=5"),
+            (["run", "biped", "--flip", "torque=100"], "does not say when"),
+            (["run", "who.bioMod"], "MJCF"),
             (["run", "biped", "--flip", "att=2"], "att is no key"),
             (["run", "biped", "--video", "flip.doc"], "another ending"),
             (["run", "biped", "--duration", "-1"], "duration of a run"),

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from somersault import SomersaultError
 from somersault.robot import landing_window as window
 from somersault.robot import tuck_servo as servo
 from somersault.robot.tuck_servo import LiftOff, Somersault, Tuck
@@ -166,3 +168,18 @@ class TestWindow:
             if window.reaches(window.hip_angle(lean, math.radians(350 + d)), *np.radians([-60, 60]))
         ]  # fmt: skip
         assert (min(good), max(good)) == (-55, 60)
+
+
+class TestMistakes:
+    @pytest.mark.parametrize("momentum", [0.0, math.nan, math.inf])
+    def test_no_length_ends_a_somersault_that_does_not_turn(self, momentum: float) -> None:
+        with pytest.raises(SomersaultError, match="momentum"):
+            servo.leg_length(TUCK, UP, flip(momentum=momentum), 0.7)
+
+    def test_what_is_no_number_is_named(self) -> None:
+        with pytest.raises(SomersaultError, match="height must be a finite"):
+            LiftOff(speed=3.3, height=math.nan, ago=0.1)
+        with pytest.raises(SomersaultError, match="offset must be a finite"):
+            replace(TUCK, offset=math.nan)
+        with pytest.raises(SomersaultError, match="guess must be a finite"):
+            servo.leg_length(TUCK, UP, flip(), math.nan)

@@ -93,12 +93,15 @@ class Endings:
         The one, among `failed`, of a run that cannot begin with the numbers it is given.
     good : tuple of str
         Those in which what was attempted came off, where runs are attempts.
+    called : str
+        What many of them are called: "flights", "runs" …
     """
 
     words: tuple[str, ...]
     failed: tuple[str, ...]
     unsound: str
     good: tuple[str, ...] = ()
+    called: str = "runs"
 
     def code(self, word: str) -> int:
         """The code of an ending."""

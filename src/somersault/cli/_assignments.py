@@ -8,7 +8,9 @@ from collections.abc import Iterable
 from somersault._core.errors import SomersaultError
 
 
-def assignments(option: str, items: Iterable[str]) -> dict[str, float]:
+def assignments(
+    option: str, items: Iterable[str], what: str = "JOINT", example: str = "shoulder=1.3"
+) -> dict[str, float]:
     """{"shoulder": 1.3} of ["shoulder=1.3"]; SomersaultError for anything else."""
     result: dict[str, float] = {}
     for item in items:
@@ -19,8 +21,8 @@ def assignments(option: str, items: Iterable[str]) -> dict[str, float]:
             value = math.nan
         if not equals or not name or not math.isfinite(value):
             raise SomersaultError(
-                f"{option} takes JOINT=NUMBER, and {item!r} is not that; write for example "
-                f"{option} shoulder=1.3"
+                f"{option} takes {what}=NUMBER, and {item!r} is not that; write for example "
+                f"{option} {example}"
             )
         if name in result:
             raise SomersaultError(f"{option} gives {name!r} twice; give it once")

@@ -96,7 +96,7 @@ def run(chosen: argparse.Namespace) -> None:
         spec.plan, None if whole else chosen.out, chosen.chunk, chosen.threads, chosen.workers,
         chosen.scheduler, _security(chosen), progress=sys.stderr.isatty(),
     )  # fmt: skip
-    writing = Writing()
+    writing, called = Writing(), spec.plan.simulation.endings.called
     record = {"model": spec.plan.simulation.name, "dimensions": spec.plan.dims}
     record |= summary(flown.dataset, spec.tolerance)
     drawn = [n for n, v in spec.plan.vary.items() if v.distribution is not None]
@@ -118,7 +118,7 @@ def run(chosen: argparse.Namespace) -> None:
     few = points * len(spec.quantities) <= _MOST_RANKINGS
     if len(drawn) > 1 and 64 <= spec.plan.size <= _MOST_RANKED and few:
         record |= _ranking(flown.dataset, spec.quantities)
-    print(json.dumps(record) if chosen.json else "\n".join(_page(record)))
+    print(json.dumps(record) if chosen.json else "\n".join(_page(record, called)))
     writing.finish()
 
 
@@ -168,10 +168,10 @@ def _percent(share: dict[str, float]) -> str:
     )
 
 
-def _page(record: dict[str, Any]) -> list[str]:
+def _page(record: dict[str, Any], called: str) -> list[str]:
     shape = " x ".join(f"{name} {n}" for name, n in record["dimensions"].items())
     ended = ", ".join(f"{word} {n:,}" for word, n in record["ended"].items())
-    lines = [f"{record['model']}: {record['flights']:,} flights ({shape})", f"  ended: {ended}"]
+    lines = [f"{record['model']}: {record['flights']:,} {called} ({shape})", f"  ended: {ended}"]
     if "successes" in record:
         lines.append(f"  came off: {_percent(record['successes'])}")
     for name, row in record["reported"].items():

@@ -81,34 +81,32 @@ def run(chosen: argparse.Namespace) -> None:
 def _asked_for(chosen: argparse.Namespace) -> Runs:
     from dataclasses import replace
 
-    from somersault.robot import Flip, Robot, Runs, maneuver, read_runs
+    from somersault.robot import Flip, Robot, Runs, maneuver, read_runs, usual
     from somersault.spec import structured
 
     if chosen.model.endswith(".toml"):
-        runs = read_runs(Path(chosen.model))
-    else:
-        runs = Runs(Robot(chosen.model))
-    if chosen.duration is not None:
-        runs = replace(runs, duration=chosen.duration)
-    option, said = "--flip", chosen.flip
-    if chosen.half_twist:
-        option, said = "--half-twist", chosen.half_twist
-        if chosen.model.endswith(".toml"):
+        if chosen.half_twist:
             raise SomersaultError(
                 '--half-twist is for a model; write maneuver = "half_twist" in the SPEC instead'
             )
-        runs = replace(runs, control=maneuver("half_twist"))
-    if said:
-        given = assignments(option, said)
+        runs = read_runs(Path(chosen.model))
+    else:
+        numbers = maneuver("half_twist") if chosen.half_twist else usual(chosen.model)
+        runs = Runs(Robot(chosen.model), numbers)
+    control, duration = runs.control, runs.duration
+    if chosen.duration is not None:
+        duration = chosen.duration
+    option = "--half-twist" if chosen.half_twist else "--flip"
+    if said := chosen.half_twist or chosen.flip:
+        given = assignments(option, said, "KEY", "at=5")
         structured(given, Flip, "flip", option)  # refuses what is none of its numbers
-        flip = replace(runs.control.flip, **given)
-        runs = replace(runs, control=replace(runs.control, flip=flip))
-        if flip.at >= runs.duration:
+        control = replace(control, flip=replace(control.flip, **given))
+        if control.flip.at >= Flip.at:
             raise SomersaultError(
-                f"the somersault is to be at {flip.at:g} s, but the run is over at "
-                f"{runs.duration:g}; give {option} at=S, or a longer --duration"
+                f"{option} does not say when; give it the time in seconds, for example "
+                f"{option} at=5 {said[0]}"
             )
-    return runs
+    return replace(runs, control=control, duration=duration)
 
 
 def _record(ran: Run) -> dict[str, Any]:

@@ -105,7 +105,8 @@ def _run_chunks(
     shown: bool,
 ) -> None:  # fmt: skip
     remaining = sum(map(chunks.size, left))
-    with _run.progress(plan.count, plan.count - remaining, shown) as advance:
+    called = plan.simulation.endings.called
+    with _run.progress(plan.count, plan.count - remaining, shown, called) as advance:
         if left and (workers is not None or scheduler is not None):
             from somersault.ensembles._cluster import on_cluster
 
@@ -133,7 +134,8 @@ def _in_memory(
 ) -> Ensemble:  # fmt: skip
     if plan.count * run_bytes(plan) > _MEMORY_BYTES:
         raise SomersaultError(
-            f"{plan.count:,} flights would fill the memory; write them to a Zarr store, MAP.zarr"
+            f"{plan.count:,} {plan.simulation.endings.called} would fill the memory; write them to "
+            "a Zarr store, MAP.zarr"
         )
     data, put = empty_dataset(plan, chunks)
     every = list(range(len(chunks)))

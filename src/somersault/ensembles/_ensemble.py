@@ -175,14 +175,14 @@ def _warn_of_failures(planned: Plan, found: Ensemble) -> None:
     lost = {word: n for word, n in endings(found.dataset).items() if word in known.failed}
     if unsound := lost.pop(known.unsound, 0):
         note(
-            f"{unsound:,} of {planned.count:,} flights could not begin ({known.unsound}): what is "
-            "varied gave them numbers that no flight can have, like times of a move out of order, "
-            "angles beyond a joint's limits or a mass that is not positive; what they report is "
-            "NaN, and counts as failed"
+            f"{unsound:,} of {planned.count:,} {known.called} could not begin ({known.unsound}): "
+            "what is varied gave them numbers that none of them can have, like times of a move out "
+            "of order, angles or lengths beyond a joint's limits or a mass that is not positive; "
+            "what they report is NaN, and counts as failed"
         )
     if lost:
         reasons = ", ".join(f"{word}: {count:,}" for word, count in lost.items())
         note(
-            f"{sum(lost.values()):,} of {planned.count:,} flights broke off ({reasons}); what they "
-            "report is NaN, and counts as failed"
+            f"{sum(lost.values()):,} of {planned.count:,} {known.called} broke off ({reasons}); "
+            "what they report is NaN, and counts as failed"
         )

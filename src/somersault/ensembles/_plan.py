@@ -274,7 +274,8 @@ def plan(
     if planned.count > MOST_RUNS:
         shape = " x ".join(f"{n} {length}" for n, length in planned.dims.items())
         raise SomersaultError(
-            f"vary asks for {planned.count:.3g} flights ({shape}); at most {MOST_RUNS:.0e} fly"
+            f"vary asks for {planned.count:.3g} {simulation.endings.called} ({shape}); give "
+            f"at most {MOST_RUNS:.0e}"
         )
     _check_edges(planned)
     json.dumps(planned.specification)

@@ -79,23 +79,23 @@ def _as_done(
 
 
 @contextmanager
-def progress(total: int, done: int, shown: bool) -> Iterator[Advance]:
+def progress(total: int, done: int, shown: bool, called: str = "flights") -> Iterator[Advance]:
     """How far `total` flights are, `done` before: shown as a bar with share, rate and time left on
     standard error, or noted once if they will take very long."""
     if total == done:
         yield lambda more: None
     elif shown:
-        with _bar(total, done) as advance:
+        with _bar(total, done, called) as advance:
             yield advance
     else:
-        yield _Estimate(total - done).advance
+        yield _Estimate(total - done, called).advance
 
 
 class _Estimate:
     """Notes once, when some of so many flights are done, that the rest will take very long."""
 
-    def __init__(self, left: int) -> None:
-        self.left, self.done, self.noted = left, 0, False
+    def __init__(self, left: int, called: str) -> None:
+        self.left, self.done, self.noted, self.called = left, 0, False, called
         self.begun = time.monotonic()
 
     def advance(self, more: int) -> None:
@@ -105,8 +105,9 @@ class _Estimate:
         if not self.noted and elapsed > _SETTLED and remaining > _LONG:
             self.noted = True
             note(
-                f"{self.left:,} flights are left, which at {self.done / elapsed:,.0f} a second "
-                f"will take about {in_words(remaining)}; fewer of them, or more machines, take less"
+                f"{self.left:,} {self.called} are left, which at {self.done / elapsed:,.0f} a "
+                f"second will take about {in_words(remaining)}; fewer of them, or more machines, "
+                "take less"
             )
 
 
@@ -119,7 +120,7 @@ def in_words(seconds: float) -> str:
 
 
 @contextmanager
-def _bar(total: int, done: int) -> Iterator[Advance]:
+def _bar(total: int, done: int, called: str) -> Iterator[Advance]:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, ProgressColumn, Task, TextColumn
     from rich.text import Text
@@ -135,7 +136,8 @@ def _bar(total: int, done: int) -> Iterator[Advance]:
             return Text(f"{flown / elapsed:,.0f}/s, {in_words(left)} left")
 
     with stage(""), Progress(
-        TextColumn("{task.completed:,.0f} of {task.total:,.0f} flights, {task.percentage:.3g} %"),
+        TextColumn(f"{{task.completed:,.0f}} of {{task.total:,.0f}} {called}, "
+                   "{task.percentage:.3g} %"),
         BarColumn(bar_width=10), Left(), console=Console(stderr=True), transient=True,
     ) as bar:  # fmt: skip
         task = bar.add_task("", total=total, completed=done)

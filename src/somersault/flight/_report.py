@@ -20,8 +20,9 @@ from somersault.simulation import LANDING_ERROR, Endings, Variable
 
 TURNS = {"somersaults": "somersault", "twists": "twist"}
 ENDINGS = Endings(
-    (*STATUS.values(), "no takeoff"), ("too many steps", "not finite", "no takeoff"), "no takeoff"
-)
+    (*STATUS.values(), "no takeoff"), ("too many steps", "not finite", "no takeoff"), "no takeoff",
+    called="flights",
+)  # fmt: skip
 _MOST_SAMPLES = 100_000
 
 

@@ -12,8 +12,9 @@ from somersault.robot._control import (
     Start,
 )
 from somersault.robot._controller import Controller
-from somersault.robot._maneuvers import MANEUVERS, maneuver
-from somersault.robot._robot import Leg, Machine, Robot
+from somersault.robot._leg import Leg
+from somersault.robot._maneuvers import MANEUVERS, maneuver, usual
+from somersault.robot._robot import Machine, Robot
 from somersault.robot._run import Event, Run, run, run_of
 from somersault.robot._runs import Runs
 from somersault.robot._spec import KEYS, parse_runs, read_runs
@@ -51,4 +52,5 @@ __all__ = [
     "run_of",
     "similar",
     "unit",
+    "usual",
 ]

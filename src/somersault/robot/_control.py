@@ -4,21 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields
-from functools import cache
 from typing import Any
 
 from somersault._core.checks import instance
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
+from somersault.robot._least import AtLeastOne, Least, NotNegative, Positive, leasts
 from somersault.robot._twist import Twist
 
 NEVER = 1e6
 """A time (s), or a number of steps, that no run reaches."""
-
-_NOT_NEGATIVE = (
-    "stiffness", "damping", "spring", "friction", "length", "height", "width", "stance_time",
-    "piston_speed", "duration", "hold",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -59,35 +54,35 @@ class Running:
 
     speed: float = 1.0
     turn_rate: float = 0.0
-    leg_length: float = 0.80
-    idle_length: float = 0.66
-    lift_off_speed: float = 1.5
-    thrust_factor: float = 1.06
-    stance_time: float = 0.17
-    speed_gain: float = 0.07
-    speed_change: float = NEVER
+    leg_length: Positive = 0.80
+    idle_length: Positive = 0.66
+    lift_off_speed: NotNegative = 1.5
+    thrust_factor: NotNegative = 1.06
+    stance_time: NotNegative = 0.17
+    speed_gain: NotNegative = 0.07
+    speed_change: NotNegative = NEVER
     foot_offset: float = 0.04
-    roll_stiffness: float = 600.0
-    pitch_stiffness: float = 150.0
-    yaw_stiffness: float = 100.0
-    roll_damping: float = 45.0
-    pitch_damping: float = 45.0
-    yaw_damping: float = 10.0
-    friction: float = 0.6
-    turning_friction: float = 0.025
-    piston_speed: float = 1.5
+    roll_stiffness: NotNegative = 600.0
+    pitch_stiffness: NotNegative = 150.0
+    yaw_stiffness: NotNegative = 100.0
+    roll_damping: NotNegative = 45.0
+    pitch_damping: NotNegative = 45.0
+    yaw_damping: NotNegative = 10.0
+    friction: NotNegative = 0.6
+    turning_friction: NotNegative = 0.025
+    piston_speed: NotNegative = 1.5
 
 
 @dataclass(frozen=True)
 class Hips:
     """[hips]: how hip angles are held in the air, by axis of the hip: N m/rad and N m s/rad."""
 
-    y_stiffness: float = 600.0
-    x_stiffness: float = 350.0
-    z_stiffness: float = 60.0
-    y_damping: float = 18.0
-    x_damping: float = 14.0
-    z_damping: float = 1.5
+    y_stiffness: NotNegative = 600.0
+    x_stiffness: NotNegative = 350.0
+    z_stiffness: NotNegative = 60.0
+    y_damping: NotNegative = 18.0
+    x_damping: NotNegative = 14.0
+    z_damping: NotNegative = 1.5
 
 
 @dataclass(frozen=True)
@@ -141,30 +136,30 @@ class Flip:
         How long the legs keep their length after that, s.
     """
 
-    at: float = NEVER
-    hurdle_speed: float = 2.4
+    at: NotNegative = NEVER
+    hurdle_speed: NotNegative = 2.4
     hurdle_pitch: float = -0.15
     foot: float = -0.11
-    width: float = 0.24
-    leg_length: float = 0.77
-    torque: float = 105.0
-    lift_off_speed: float = 4.0
-    piston_speed: float = 2.0
+    width: NotNegative = 0.24
+    leg_length: Positive = 0.77
+    torque: NotNegative = 105.0
+    lift_off_speed: NotNegative = 4.0
+    piston_speed: NotNegative = 2.0
     feet_back: float = 0.436
     attitude: float = 6.109
-    servo: float = 1.0
-    held_length: float = 0.78
-    leg_spring: float = 0.0
-    leg_rest: float = 0.5
-    leg_damping: float = 4.0
+    servo: NotNegative = 1.0
+    held_length: Positive = 0.78
+    leg_spring: NotNegative = 0.0
+    leg_rest: NotNegative = 0.5
+    leg_damping: NotNegative = 4.0
     window: float = 0.12
     landing_foot: float = 0.05
     landing_speed: float = 0.8
-    landing_gain: float = 0.07
-    landing_stiffness: float = 150.0
-    landing_damping: float = 35.0
-    landing_lift_off: float = 1.3
-    hold: float = 0.08
+    landing_gain: NotNegative = 0.07
+    landing_stiffness: NotNegative = 150.0
+    landing_damping: NotNegative = 35.0
+    landing_lift_off: NotNegative = 1.3
+    hold: NotNegative = 0.08
 
 
 @dataclass(frozen=True)
@@ -209,8 +204,8 @@ class Push:
         N, at the torso's centre of mass.
     """
 
-    at: float = NEVER
-    duration: float = 0.1
+    at: NotNegative = NEVER
+    duration: NotNegative = 0.1
     forward: float = 0.0
     sideways: float = 0.0
     upward: float = 0.0
@@ -228,8 +223,8 @@ class End:
         Steps after the somersault with which it has succeeded.
     """
 
-    fall_height: float = 0.4
-    steps_after: float = NEVER
+    fall_height: NotNegative = 0.4
+    steps_after: AtLeastOne = NEVER
 
 
 @dataclass(frozen=True)
@@ -250,7 +245,7 @@ class Start:
 
     forward: float = 0.8
     sideways: float = 0.0
-    height: float = 0.87
+    height: Positive = 0.87
     roll: float = 0.0
     pitch: float = 0.0
     roll_rate: float = 0.0
@@ -274,14 +269,14 @@ class Plant:
         That the hips' actuators have.
     """
 
-    friction: float = 1.0
-    turning_friction: float = 1.0
-    stiffness: float = 1.0
-    damping: float = 1.0
-    roll_inertia: float = 1.0
-    pitch_inertia: float = 1.0
-    yaw_inertia: float = 1.0
-    torque: float = 1.0
+    friction: NotNegative = 1.0
+    turning_friction: NotNegative = 1.0
+    stiffness: NotNegative = 1.0
+    damping: NotNegative = 1.0
+    roll_inertia: Positive = 1.0
+    pitch_inertia: Positive = 1.0
+    yaw_inertia: Positive = 1.0
+    torque: NotNegative = 1.0
 
 
 @dataclass(frozen=True)
@@ -303,9 +298,12 @@ class Control:
             given = instance(f"control.{table.name}", getattr(self, table.name), _kind(table.name))
             for each in fields(given):
                 where = f"{table.name}.{each.name}"
-                value = number(where, getattr(given, each.name))
-                if value < 0 and (table.name, each.name) in must_not_be_negative():
-                    raise SomersaultError(f"{where} must not be negative, and is {value:g}")
+                value, least = (
+                    number(where, getattr(given, each.name)),
+                    least_of(table.name, each.name),
+                )
+                if least and not least.allows(value):
+                    raise SomersaultError(f"{where} must {least}, and is {value:g}; correct it")
 
     def numbers(self) -> dict[tuple[str, str], float]:
         """Each by its table and name."""
@@ -316,11 +314,9 @@ class Control:
         }
 
 
-@cache
-def must_not_be_negative() -> frozenset[tuple[str | int, ...]]:
-    """The numbers, by table and name, that make no sense below zero."""
-    every = [(table.name, n.name) for table in fields(Control) for n in fields(_kind(table.name))]
-    return frozenset(key for key in every if key[0] == "plant" or key[1].endswith(_NOT_NEGATIVE))
+def least_of(table: str, name: str) -> Least | None:
+    """What a number is at least; None where any will do."""
+    return leasts(_kind(table)).get(name)
 
 
 def _kind(table: str) -> Any:

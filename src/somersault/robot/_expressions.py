@@ -12,6 +12,11 @@ from typing import Any
 import casadi as ca
 
 
+def is_known(value: Any) -> bool:
+    """Whether it is no symbol of a controller."""
+    return not isinstance(value, ca.SX | ca.MX | ca.DM)
+
+
 def choose(condition: Any, yes: Any, no: Any) -> Any:
     """`yes` where the condition holds, else `no`."""
     return ca.if_else(condition, yes, no)

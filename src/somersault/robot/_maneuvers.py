@@ -43,6 +43,31 @@ def maneuver(name: str) -> Control:
     return Control() if name == "somersault" else _read(name)
 
 
+def usual(model: str) -> Control:
+    """The numbers with which a robot runs, where it is given none.
+
+    Parameters
+    ----------
+    model : str
+        Its model. "biped_weighted" runs with [running] and [hips] of the maneuver "half_twist", as
+        it falls with those of the lighter "biped". Every other robot has `Control()`.
+
+    Returns
+    -------
+    Control
+
+    Examples
+    --------
+    >>> from somersault.robot import usual
+    >>> usual("biped_weighted").running.pitch_stiffness
+    450.0
+    """
+    if text("model", model) != "biped_weighted":
+        return Control()
+    heavy = maneuver("half_twist")
+    return Control(running=heavy.running, hips=heavy.hips)
+
+
 @cache
 def _read(name: str) -> Control:
     path = Path(str(files("somersault.robot") / f"{name}.toml"))

@@ -13,66 +13,14 @@ from typing import Any
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import instance, name_list, shown, text
+from somersault._core.checks import instance, shown, text
 from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault._core.numbers import number
 from somersault.model import load, shipped
+from somersault.robot._leg import Leg
+from somersault.robot._soundness import base_of, check_alike, check_leg, check_world, motor_of
 
-
-@dataclass(frozen=True)
-class Leg:
-    """Which parts of a model are a leg.
-
-    Parameters
-    ----------
-    hip : tuple of str
-        The hinges about the body's axes 2, 1 and 3, from the torso outwards: fore and aft, sideways
-        and about the leg. A motor acts on each.
-    slide : str
-        The joint by which the leg gets longer.
-    foot : str
-        The sphere that it stands on.
-    spring : str
-        The actuator that pushes the leg to its piston's length, of the kind `position`.
-    stop : str
-        The one that pulls it back to that.
-
-    Examples
-    --------
-    >>> from somersault.robot import Leg
-    >>> Leg.called("left").hip
-    ('left_hip_y', 'left_hip_x', 'left_hip_z')
-    """
-
-    hip: tuple[str, str, str]
-    slide: str
-    foot: str
-    spring: str
-    stop: str
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "hip", name_list("hip of a leg", self.hip))
-        if len(self.hip) != 3:
-            raise SomersaultError(f"hip of a leg must be three joints, and is {shown(self.hip)}")
-        for part in ("slide", "foot", "spring", "stop"):
-            text(f"{part} of a leg", getattr(self, part))
-
-    @classmethod
-    def called(cls, side: str) -> Leg:
-        """A leg whose parts have the names that they have in the model `biped`.
-
-        Parameters
-        ----------
-        side : str
-            "left" or "right".
-
-        Returns
-        -------
-        Leg
-        """
-        side = text("side", side)
-        hip = (f"{side}_hip_y", f"{side}_hip_x", f"{side}_hip_z")
-        return cls(hip, f"{side}_leg", f"{side}_foot", f"{side}_spring", f"{side}_stop")
+_NO_ROBOTS = (".urdf", ".biomod", ".osim")
 
 
 @dataclass(frozen=True)
@@ -96,9 +44,19 @@ class Robot:
     longest: float = 0.862
 
     def __post_init__(self) -> None:
-        text("model of a robot", self.model)
+        model = text("model of a robot", self.model)
+        if Path(model).suffix.lower() in _NO_ROBOTS:
+            raise SomersaultError(
+                f"{Path(model).name} is no robot that runs: that takes an MJCF file (.xml) with "
+                "ground, contacts and actuators, like the model biped"
+            )
         for side in ("left", "right"):
             instance(f"{side} leg", getattr(self, side), Leg)
+        if shared := set(self.left.parts) & set(self.right.parts):
+            raise SomersaultError(
+                f"left and right leg cannot both have {shown(min(shared)[1])}; name the "
+                "parts of each"
+            )
         ends = number("shortest", self.shortest), number("longest", self.longest)
         if not 0 < ends[0] < ends[1]:
             raise SomersaultError(
@@ -182,9 +140,11 @@ class Machine:
             ) from None
         self.file = path
         self.digest = sha256(path.read_bytes()).hexdigest()
-        base = _base(path.name, plain)
+        base = base_of(path.name, plain)
         for side, leg in zip(("left", "right"), robot.legs, strict=True):
-            _check_leg(path.name, plain, side, leg)
+            check_leg(path.name, plain, side, leg)
+        check_world(path.name, plain, [leg.foot for leg in robot.legs])
+        check_alike(path.name, plain, robot.left, robot.right)
         self.mujoco = _with_sensors(spec, base, robot)
         m = self.mujoco
         data = mujoco.MjData(m)
@@ -274,18 +234,11 @@ class _Addresses:
         joints = [m.joint(name) for name in (*leg.hip, leg.slide)]
         self.positions = [int(joint.qposadr[0]) for joint in joints]
         self.rates = [int(joint.dofadr[0]) for joint in joints]
-        motors = [_motor(m, name) for name in leg.hip]
+        motors = [motor_of(m, name) for name in leg.hip]
         self.motors = motors
         self.limits = [(float(m.actuator_ctrlrange[k][1])) for k in motors]
         self.range = [(float(j.range[0]), float(j.range[1])) for j in joints[:3]]
         self.pistons = [int(m.actuator(name).id) for name in (leg.spring, leg.stop)]
-
-
-def _motor(m: Any, joint: str) -> int:
-    """The actuator on a joint; −1 if there is none."""
-    which = m.joint(joint).id
-    acting = [k for k in range(m.nu) if m.actuator_trnid[k][0] == which]
-    return acting[0] if acting else -1
 
 
 def _path(model: str) -> Path:
@@ -293,65 +246,6 @@ def _path(model: str) -> Path:
     if model in shipped():
         return Path(str(files("somersault.model") / "shipped" / f"{model}.xml"))
     return Path(model)
-
-
-def _base(file: str, m: Any) -> str:
-    import mujoco
-
-    free = [k for k in range(m.njnt) if m.jnt_type[k] == mujoco.mjtJoint.mjJNT_FREE]
-    if free != [0]:
-        raise SomersaultError(
-            f"{file} is no robot that runs: it needs one body with a free joint, first of all"
-        )
-    return str(m.body(int(m.jnt_bodyid[0])).name)
-
-
-def _is_there(m: Any, kind: Any, name: str) -> bool:
-    """Whether a model has something of a kind called so."""
-    import mujoco
-
-    try:
-        return bool(mujoco.mj_name2id(m, kind, name) >= 0)
-    except TypeError:  # a name that is no text in UTF-8
-        return False
-
-
-def _check_leg(file: str, m: Any, side: str, leg: Leg) -> None:
-    import mujoco
-
-    for kind, count, names in (
-        (mujoco.mjtObj.mjOBJ_JOINT, "joint", (*leg.hip, leg.slide)),
-        (mujoco.mjtObj.mjOBJ_GEOM, "foot", (leg.foot,)),
-        (mujoco.mjtObj.mjOBJ_ACTUATOR, "actuator", (leg.spring, leg.stop)),
-    ):
-        for name in names:
-            if not _is_there(m, kind, name):
-                what = {"foot": "foot, a geom", "actuator": "spring or stop, an actuator"}
-                raise SomersaultError(
-                    f"{file}: its {side} leg has no {what.get(count, count)} called {name!r}; add "
-                    "it to the file, or say what it is called there"
-                )
-    spring = m.actuator(leg.spring)
-    if not (spring.gainprm[0] > 0 and np.isclose(spring.biasprm[1], -spring.gainprm[0])):
-        raise SomersaultError(
-            f"{file}: {leg.spring} is no spring; make it a position actuator with kp above zero"
-        )
-    if m.geom_type[m.geom(leg.foot).id] != mujoco.mjtGeom.mjGEOM_SPHERE:
-        raise SomersaultError(f"{file}: the foot {leg.foot} must be a sphere")
-    for name, axis in zip(
-        (*leg.hip, leg.slide), ([0, 1, 0], [1, 0, 0], [0, 0, 1], [0, 0, -1]), strict=True
-    ):
-        if not np.allclose(m.joint(name).axis, axis, atol=1e-9):
-            raise SomersaultError(
-                f"{file}: joint {name} must be along {axis}; a leg's hinges turn about axes 2, 1 "
-                "and 3, and its slide points down"
-            )
-    for name in leg.hip:
-        motor = _motor(m, name)
-        if motor < 0 or not m.actuator_ctrllimited[motor]:
-            raise SomersaultError(
-                f"{file}: joint {name} needs a motor with a ctrlrange, which says how strong it is"
-            )
 
 
 def _with_sensors(spec: Any, base: str, robot: Robot) -> Any:

@@ -21,6 +21,7 @@ from somersault.history import summary
 from somersault.model import Model
 from somersault.robot._control import Control
 from somersault.robot._controller import REMEMBERED
+from somersault.robot._maneuvers import usual
 from somersault.robot._robot import PERIOD, SENSORS, Robot
 from somersault.robot._runs import ENDINGS, Runs, reported
 from somersault.simulation import ENDED
@@ -206,7 +207,7 @@ def run(
     duration : float
         s; less where the robot falls.
     control : Control, optional
-        The numbers of its controller.
+        The numbers of its controller; those of `usual` by default.
     flip : float, optional
         When it is to somersault, s: the first step after that is the hurdle.
     samples : int
@@ -229,7 +230,9 @@ def run(
     (False, 'compression')
     """
     chosen = robot if isinstance(robot, Robot) else Robot(str(file_path("robot", robot)))
-    numbers = Control() if control is None else instance("control", control, Control)
+    if control is None:
+        control = usual(chosen.model)
+    numbers = instance("control", control, Control)
     if flip is not None:
         numbers = replace(numbers, flip=replace(numbers.flip, at=number("flip", flip)))
     return run_of(Runs(chosen, numbers, duration), samples)

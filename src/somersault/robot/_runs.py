@@ -14,7 +14,7 @@ from somersault._core.canonical import canonical
 from somersault._core.checks import instance, text
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
-from somersault.robot._control import Control, must_not_be_negative
+from somersault.robot._control import NEVER, Control, least_of
 from somersault.robot._controller import FELL, RAN_ON, REMEMBERED, Controller
 from somersault.robot._half_twist import HalfTwist
 from somersault.robot._plant import Lane, advance
@@ -52,6 +52,10 @@ _VARIABLES = {
     "time": Variable("s", words="when the run ended"),
 }
 _LONGEST = 1_000.0  # s
+_LENGTHS = (
+    ("running", "leg_length"), ("running", "idle_length"), ("flip", "leg_length"),
+    ("flip", "held_length"),
+)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +86,13 @@ class Runs:
                 f"duration of a run is up to {_LONGEST:g} s, and here {self.duration:g}; change it"
             )
         _check_lengths(self.robot, self.control)
+        for table, what in (("flip", "somersault"), ("push", "push")):
+            at = getattr(self.control, table).at
+            if self.duration <= at < NEVER:
+                raise SomersaultError(
+                    f"the {what} is to be at {at:g} s, but the run is over at {self.duration:g}; "
+                    f"make {table}.at less, or the duration longer"
+                )
 
     def __getstate__(self) -> dict[str, Any]:
         return {"robot": replace(self.robot), "control": self.control, "duration": self.duration}
@@ -148,7 +159,7 @@ class Runs:
         return self
 
     def sound(self, values: Numbers, count: int) -> Array:
-        """Whether each run can begin: no gain, mass or length is negative, and it is in the air.
+        """Whether each run can begin: no number is too small, legs reach, and it is in the air.
 
         Parameters
         ----------
@@ -160,9 +171,12 @@ class Runs:
         ndarray of bool, (count,)
         """
         good = np.ones(count, bool)
-        for name, value in values.items():
-            if name in must_not_be_negative():
-                good &= np.asarray(value) >= 0
+        for (table, name), value in values.items():
+            if least := least_of(str(table), str(name)):
+                good &= least.allows(np.asarray(value))
+        for place in _LENGTHS:
+            length = np.asarray(values[place])
+            good &= (self.robot.shortest <= length) & (length <= self.robot.longest)
         return good & (np.asarray(values["start", "height"]) > self.robot.shortest)
 
     @property
@@ -219,10 +233,7 @@ def _controller(robot: Robot, digest: str, twists: bool) -> Controller:
 
 def _check_lengths(robot: Robot, control: Control) -> None:
     """SomersaultError for a length that no leg of the robot has."""
-    for table, name in (
-        ("running", "leg_length"), ("running", "idle_length"), ("flip", "leg_length"),
-        ("flip", "held_length"),
-    ):  # fmt: skip
+    for table, name in _LENGTHS:
         length = getattr(getattr(control, table), name)
         if not robot.shortest <= length <= robot.longest:
             raise SomersaultError(

@@ -20,7 +20,7 @@ from somersault.robot._control import (
     Running,
     Start,
 )
-from somersault.robot._maneuvers import maneuver
+from somersault.robot._maneuvers import maneuver, usual
 from somersault.robot._robot import Robot
 from somersault.robot._runs import Runs
 from somersault.robot._twist import Twist
@@ -101,11 +101,25 @@ def parse_runs(given: Mapping[str, Any], beside: Path) -> Runs:
     folder = file_path("beside", beside)
     if "robot" not in given:
         raise SomersaultError('robot is missing; a SPEC of a run has robot = "biped", or a file')
-    tables = _over(maneuver(given.get("maneuver", "somersault")), given)
+    for table in ("vary", "sample"):
+        if table in given:
+            raise SomersaultError(
+                f"[{table}] is of a SPEC of many runs; give it to somersault ensemble"
+            )
+    tables = _over(_numbers(given), given)
     tables["robot"] = _found(tables["robot"], folder)
     keys = structured(tables, Keys)
     control = Control(**{table.name: getattr(keys, table.name) for table in fields(Control)})
     return Runs(keys.robot, control, keys.duration)
+
+
+def _numbers(given: Mapping[str, Any]) -> Control:
+    """Those that a SPEC's tables change."""
+    if "maneuver" in given:
+        return maneuver(given["maneuver"])
+    robot = given["robot"]
+    model = robot.get("model") if isinstance(robot, Mapping) else robot
+    return usual(model) if isinstance(model, str) else Control()
 
 
 def _over(numbers: Control, given: Mapping[str, Any]) -> dict[str, Any]:

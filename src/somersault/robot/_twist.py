@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from somersault.robot._least import NotNegative
+
 
 @dataclass(frozen=True)
 class Twist:
@@ -44,17 +46,17 @@ class Twist:
     lean: float = 0.0
     pitch_rate: float = 7.0
     yaw_rate: float = 5.0
-    lift_off_speed: float = 3.8
-    pace: float = 0.0
-    pitch_damping: float = 400.0
-    roll_stiffness: float = 1800.0
-    roll_damping: float = 135.0
-    yaw_damping: float = 100.0
-    torque: float = 150.0
+    lift_off_speed: NotNegative = 3.8
+    pace: NotNegative = 0.0
+    pitch_damping: NotNegative = 400.0
+    roll_stiffness: NotNegative = 1800.0
+    roll_damping: NotNegative = 135.0
+    yaw_damping: NotNegative = 100.0
+    torque: NotNegative = 150.0
     straddle: float = 0.0
-    straddle_gain: float = 0.0
-    sideways_gain: float = 0.07
-    landing_roll_stiffness: float = 1000.0
-    landing_roll_damping: float = 135.0
-    landing_yaw_damping: float = 50.0
-    turn_rate: float = 1.0
+    straddle_gain: NotNegative = 0.0
+    sideways_gain: NotNegative = 0.07
+    landing_roll_stiffness: NotNegative = 1000.0
+    landing_roll_damping: NotNegative = 135.0
+    landing_yaw_damping: NotNegative = 50.0
+    turn_rate: NotNegative = 1.0

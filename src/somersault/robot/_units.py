@@ -7,7 +7,7 @@ from dataclasses import fields, replace
 from somersault._core.checks import instance, shown, text
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
-from somersault.robot._control import Control
+from somersault.robot._control import NEVER, Control
 
 _BY_TABLE = {"plant": "1", "push": "N"}
 _BY_NAME = {
@@ -107,6 +107,8 @@ def similar(control: Control, mass: float, length: float) -> Control:
         for each in fields(numbers):
             powers = _POWERS[unit(table.name, each.name)]
             value = getattr(numbers, each.name)
+            if value >= NEVER:
+                continue
             try:
                 changed[each.name] = value * mass ** powers[0] * length ** powers[1]
             except OverflowError:

@@ -13,15 +13,24 @@ servo of the thesis.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import casadi as ca
 
-from somersault.robot._expressions import clip
+from somersault._core.errors import SomersaultError
+from somersault._core.numbers import number
+from somersault.robot._expressions import clip, is_known
 
 GRAVITY = 9.81
 _STEPS = 4  # of Newton's method, each control cycle
+
+
+def _check_numbers(given: Any) -> None:
+    """SomersaultError for what is neither finite nor an expression."""
+    for each in fields(given):
+        if is_known(value := getattr(given, each.name)):
+            number(each.name, value)
 
 
 @dataclass(frozen=True)
@@ -48,6 +57,9 @@ class Tuck:
     offset: Any
     shortest: Any
     longest: Any
+
+    def __post_init__(self) -> None:
+        _check_numbers(self)
 
     def whole(self, length: Any) -> Any:
         """Somersault inertia of the robot, kg m² (3.9)."""
@@ -79,6 +91,9 @@ class LiftOff:
     speed: Any
     height: Any
     ago: Any
+
+    def __post_init__(self) -> None:
+        _check_numbers(self)
 
 
 def flight_time(lift_off: LiftOff, landing_height: Any) -> Any:
@@ -116,6 +131,11 @@ class Somersault:
     left: Any
     sweep: Any
     lean: Any
+
+    def __post_init__(self) -> None:
+        _check_numbers(self)
+        if is_known(self.momentum) and self.momentum == 0:
+            raise SomersaultError("momentum is 0, and a body that does not turn ends no somersault")
 
 
 def time_to_turn(tuck: Tuck, somersault: Somersault, length: Any) -> Any:
@@ -156,6 +176,11 @@ def leg_length(tuck: Tuck, lift_off: LiftOff, somersault: Somersault, guess: Any
     float
         Within what the legs can do: where no length would do, the nearer limit.
 
+    Raises
+    ------
+    SomersaultError
+        For a guess that is no finite number.
+
     Examples
     --------
     >>> from somersault.robot.tuck_servo import LiftOff, Somersault, Tuck, leg_length, mismatch
@@ -166,7 +191,7 @@ def leg_length(tuck: Tuck, lift_off: LiftOff, somersault: Somersault, guess: Any
     >>> abs(float(mismatch(tuck, lift_off, somersault, length))) < 1e-6
     True
     """
-    length = guess
+    length = number("guess", guess) if is_known(guess) else guess
     for _ in range(_STEPS):
         f = mismatch(tuck, lift_off, somersault, length)
         slope = mismatch_slope(tuck, lift_off, somersault, length)
