@@ -154,7 +154,9 @@ def test_contact_sheet_has_a_picture_for_each_time():
     flown = fly("furrer", start, 0.5)
     made = contact_sheet(flown, np.linspace(0, 0.5, 7), columns=4)
     assert len(made.axes) == 2
-    assert sum(len(ax.patches) for ax in made.axes) == 7 * 6
+    assert (
+        sum(len(ax.patches) for ax in made.axes) == 7 * 7
+    )  # times, and shapes of Furrer with a neck
     words = [text.get_text() for ax in made.axes for text in ax.texts]
     assert len(words) == 7
     assert words[-1].startswith("0.50 s")

@@ -104,11 +104,11 @@ def picture(
     """
     file = check_file(path, (".png",))
     shown = several("histories", histories, 1)
-    one = times is not None and not np.shape(times)
+    one = times is not None and _is_one(times)
     moments = (
         _spread(shown, 12)
         if times is None
-        else _within(shown, numbers("times", np.atleast_1d(times)))
+        else _within(shown, numbers("times", [times] if one else times))
     )
     columns = min(whole_number("columns", columns, 1, MOST_POSES), max(1, len(moments)))
     if not 0 < len(moments) <= MOST_POSES:
@@ -173,7 +173,7 @@ def stroboscopic_picture(
     file = check_file(path, (".png",))
     shown = several("histories", histories, 1, MOST_POSES)
     chosen = look_of({"camera": (90.0, 8.0), **look})
-    if not np.shape(times):
+    if _is_one(times):
         moments = _spread(shown, whole_number("times", times, 1, MOST_POSES))
     else:
         moments = _within(shown, numbers("times", times))
@@ -216,6 +216,13 @@ def _ends(histories: Sequence[History]) -> tuple[float, float]:
     """The first time of any, and the last."""
     first = min(float(history.times[0]) for history in histories)
     return first, max(float(history.times[-1]) for history in histories)
+
+
+def _is_one(times: Any) -> bool:
+    """Whether it is one number, whatever else it may be."""
+    return getattr(times, "ndim", isinstance(times, Sequence)) == 0 or isinstance(
+        times, int | float
+    )
 
 
 def _within(histories: Sequence[History], moments: Array | Sequence[float]) -> Array:
