@@ -1142,7 +1142,18 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     # --- robots
     **{
         f"robot.{name}": _table(name)
-        for name in ("End", "Errors", "Flip", "Hips", "Plant", "Push", "Running", "Start", "Twist")
+        for name in (
+            "Change",
+            "End",
+            "Errors",
+            "Flip",
+            "Hips",
+            "Plant",
+            "Push",
+            "Running",
+            "Start",
+            "Twist",
+        )
     },
     "robot.Control": lambda: (robot.Control, vars(robot.Control())),
     "robot.Leg": lambda: (_leg, vars(robot.Leg.called("left"))),

@@ -19,7 +19,7 @@ import pytest
 import somersault as so
 from somersault import cli
 from somersault.history import read_recording
-from somersault.robot import Control, End, Flip, Push, Robot, Run, Running, Runs, Start, run
+from somersault.robot import Change, Control, End, Flip, Push, Robot, Run, Running, Runs, Start, run
 from somersault.simulation import Simulation
 
 G = 9.81
@@ -78,6 +78,36 @@ class TestRunning:
         heading = np.unwrap(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y**2 + z**2)))
         assert heading[-1] == pytest.approx(0.3 * 12, abs=0.35)
         assert ran.speed[ran.times > 6].mean() > 0.7
+
+    def test_changes_its_speed_as_it_runs(self) -> None:
+        """Within some steps, and does not fall."""
+        slow = Running(speed=0.5)
+        ran = run("biped", 9.0, Control(running=slow, change=Change(at=5.0, speed=1.2)))
+        assert not ran.fell
+        before, after = (ran.times > 3) & (ran.times < 5), ran.times > 7
+        assert ran.speed[before].mean() == pytest.approx(0.5, abs=0.15)
+        assert ran.speed[after].mean() == pytest.approx(1.2, abs=0.2)
+        unchanged = run("biped", 5.0, Control(running=slow))
+        early = ran.times < 4.99
+        np.testing.assert_array_equal(ran.positions[early], unchanged.positions[:-1][: early.sum()])
+
+    def test_begins_to_turn_as_it_runs(self) -> None:
+        """And keeps its speed, which was not asked to change."""
+        ran = run("biped", 9.0, Control(change=Change(at=4.0, turn_rate=0.4)))
+        assert not ran.fell
+        heading = ran.kept["heading"]
+        assert np.all(heading[ran.times < 4] == 0)
+        w, x, y, z = ran.base_quaternion.T
+        faced = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y**2 + z**2))
+        assert faced[-1] == pytest.approx(0.4 * 5, abs=0.35)
+        assert ran.speed[ran.times > 7].mean() == pytest.approx(1.0, abs=0.25)
+
+    def test_each_of_many_changes_by_itself(self) -> None:
+        """By how fast it is at the lift-off of a somersault; one speed is not given."""
+        runs = Runs(control=Control(change=Change(at=0.5), flip=Flip(at=3.0)), duration=5.5)
+        speeds = so.Vary(sets="change.speed", values=[0.5, 1.0, Change().speed])
+        fast = so.ensemble(runs, vary={"speed": speeds}).dataset["lift_off_forward"].values
+        assert fast[1] == fast[2] > fast[0] + 0.2
 
     def test_survives_a_push_and_falls_of_a_great_one(self) -> None:
         """Which is a result, and ends the run."""

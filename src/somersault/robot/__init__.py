@@ -1,6 +1,7 @@
 """Robots that run and flip, on the ground of MuJoCo: a controller of named states, compiled."""
 
 from somersault.robot._control import (
+    Change,
     Control,
     End,
     Errors,
@@ -25,6 +26,7 @@ from somersault.robot._units import similar, unit
 __all__ = [
     "KEYS",
     "MANEUVERS",
+    "Change",
     "Control",
     "Controller",
     "End",

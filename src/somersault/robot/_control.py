@@ -13,7 +13,7 @@ from somersault.robot._least import AtLeastOne, Least, NotNegative, Positive, le
 from somersault.robot._twist import Twist
 
 NEVER = 1e6
-"""A time (s), or a number of steps, that no run reaches."""
+"""A time (s), a number of steps, or a speed, that no run reaches: one that was not given."""
 
 
 @dataclass(frozen=True)
@@ -193,6 +193,25 @@ class Errors:
 
 
 @dataclass(frozen=True)
+class Change:
+    """[change]: another speed or turn from some time on. What is not given stays as it was.
+
+    Parameters
+    ----------
+    at : float
+        s; never, if it is left out.
+    speed : float
+        Forwards, m/s.
+    turn_rate : float
+        Of the heading, rad/s, to the left.
+    """
+
+    at: NotNegative = NEVER
+    speed: float = NEVER
+    turn_rate: float = NEVER
+
+
+@dataclass(frozen=True)
 class Push:
     """[push]: a force on the body.
 
@@ -290,6 +309,7 @@ class Control:
     flip: Flip = field(default_factory=Flip)
     twist: Twist = field(default_factory=Twist)
     errors: Errors = field(default_factory=Errors)
+    change: Change = field(default_factory=Change)
     push: Push = field(default_factory=Push)
     end: End = field(default_factory=End)
 
@@ -340,5 +360,6 @@ class Symbolic:
     flip: Flip
     twist: Twist
     errors: Errors
+    change: Change
     push: Push
     end: End

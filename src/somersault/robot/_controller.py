@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -10,7 +11,7 @@ import casadi as ca
 
 from somersault.engine import ClosedLoop
 from somersault.robot._commands import Command
-from somersault.robot._control import Control, Symbolic
+from somersault.robot._control import NEVER, Control, Running, Symbolic
 from somersault.robot._expressions import all_of, choose, clip, vector
 from somersault.robot._robot import PERIOD, SENSORS, Robot
 from somersault.robot._sensed import Sensed, sensed
@@ -66,6 +67,7 @@ class Controller:
     def _result(self, qpos: Any, qvel: Any, sensors: Any, kept: Any, numbers: Any) -> Any:
         before = dict(zip(REMEMBERED, ca.vertsplit(kept), strict=True))
         control = Symbolic(iter(ca.vertsplit(numbers)))
+        control.running = _at(before["clock"], control)
         robot = self.robot
         pistons = (before["left_piston"], before["right_piston"])
         here = sensed(robot, qpos, qvel, sensors, before["heading"], before["somersault"], pistons)
@@ -164,6 +166,16 @@ class Controller:
             for inertia, rate in zip(machine.inertias, turning, strict=True)
         ]
         return vector([*force, *moment])
+
+
+def _at(clock: Any, control: Symbolic) -> Running:
+    """[running] at a time, with what [change] makes of it."""
+    changed = {}
+    for name in ("speed", "turn_rate"):
+        before, then = getattr(control.running, name), getattr(control.change, name)
+        given = ca.fabs(then) < NEVER / 2
+        changed[name] = choose(all_of(clock >= control.change.at, given), then, before)
+    return replace(control.running, **changed)
 
 
 def _attitude(here: Sensed) -> dict[str, Any]:

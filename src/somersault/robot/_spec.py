@@ -10,6 +10,7 @@ from typing import Any
 from somersault._core.checks import file_path, shown
 from somersault._core.errors import SomersaultError
 from somersault.robot._control import (
+    Change,
     Control,
     End,
     Errors,
@@ -49,6 +50,7 @@ class Keys:
     flip: Flip = field(default_factory=Flip)
     twist: Twist = field(default_factory=Twist)
     errors: Errors = field(default_factory=Errors)
+    change: Change = field(default_factory=Change)
     push: Push = field(default_factory=Push)
     end: End = field(default_factory=End)
 
