@@ -11,7 +11,8 @@ import pytest
 from test_shipped_models import SHIPPED
 
 import somersault as so
-from somersault.robot import Leg, Robot
+from somersault.robot import Control, Leg, Plant, Robot
+from somersault.robot._plant import Lane
 
 SIDES = ("left", "right")
 
@@ -149,6 +150,46 @@ class TestMachine:
         by_hand = 2 * (0.008 + 1.0 * 0.12**2 + 0.010 + 0.652 * (length - 0.243) ** 2)
         found = machine.leg_inertia + machine.lower_leg * (length - machine.offset) ** 2
         assert found == pytest.approx(by_hand, rel=1e-9)
+
+    def test_other_proportions_are_those_of_another_file(self, tmp_path: Path) -> None:
+        """Of one that has them, compiled by MuJoCo: masses of subtrees, by which the centre of mass
+        is sensed, and weights in contacts among the rest."""
+        text = (SHIPPED / "biped.xml").read_text(encoding="utf-8")
+        for old, new in (
+            ('pos="0 0.06 0"', 'pos="0 0.075 0"'), ('pos="0 -0.06 0"', 'pos="0 -0.075 0"'),
+            ('pos="0 0 -0.622" size="0.025"', 'pos="0 0 -0.607" size="0.04"'),
+            ('mass="1" diaginertia="0.008 0.008 0.001"',
+             'mass="1.5" diaginertia="0.012 0.012 0.0015"'),
+        ):  # fmt: skip
+            assert old in text
+            text = text.replace(old, new)
+        (tmp_path / "other.xml").write_text(text, encoding="utf-8")
+        other = Robot(str(tmp_path / "other.xml")).machine.mujoco
+        lane = Lane(Robot())
+        plant = Plant(hip_spacing=1.25, foot_radius=1.6, upper_leg_mass=1.5)
+        lane.begin(np.array(list(Control(plant=plant).numbers().values())))
+        names = [
+            name
+            for name in dir(other)
+            if name.startswith(("body_", "geom_", "jnt_", "dof_", "site_", "actuator_"))
+            and isinstance(getattr(other, name), np.ndarray)
+            and not name.endswith("sameframe")  # how it is stored
+        ]
+        assert {"body_subtreemass", "dof_invweight0", "geom_rbound"} <= set(names)
+        for name in names:
+            np.testing.assert_allclose(
+                getattr(lane.model, name), getattr(other, name), rtol=1e-9, atol=1e-12, err_msg=name
+            )
+
+    def test_greater_feet_that_touch_are_found(self) -> None:
+        """Where those of the file would be clear of each other."""
+        lane = Lane(Robot())
+        for radius, touch in ((1.0, False), (2.5, True)):
+            lane.begin(np.array(list(Control(plant=Plant(foot_radius=radius)).numbers().values())))
+            data = mujoco.MjData(lane.model)
+            data.qpos[2] = 2.0
+            mujoco.mj_forward(lane.model, data)
+            assert (data.ncon > 0) == touch
 
 
 BAD = {

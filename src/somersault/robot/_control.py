@@ -286,6 +286,12 @@ class Plant:
         Of the torso.
     torque : float
         That the hips' actuators have.
+    hip_spacing : float
+        Between the hips.
+    foot_radius : float
+        Of the balls on which it stands; the soles stay where they are.
+    upper_leg_mass : float
+        Of the upper legs, and with it their inertia. The robot's mass is not kept.
     """
 
     friction: NotNegative = 1.0
@@ -296,6 +302,9 @@ class Plant:
     pitch_inertia: Positive = 1.0
     yaw_inertia: Positive = 1.0
     torque: NotNegative = 1.0
+    hip_spacing: NotNegative = 1.0
+    foot_radius: Positive = 1.0
+    upper_leg_mass: Positive = 1.0
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from somersault._core.array import Array
 from somersault.engine import System
 from somersault.robot._control import Control
 from somersault.robot._controller import REMEMBERED
-from somersault.robot._robot import Machine, Robot
+from somersault.robot._robot import Leg, Robot
 from somersault.simulation import Name
 
 _NUMBERS = tuple(Control().numbers())
@@ -52,7 +52,7 @@ class Lane:
 
         given: dict[Name, float] = dict(zip(_NUMBERS, numbers.tolist(), strict=True))
         robot, data = self._robot, self.data
-        self.model = _changed(robot.machine, given)
+        self.model = _changed(robot, given, data)
         mujoco.mj_resetData(self.model, data)
         _place(data, given)
         mujoco.mj_forward(self.model, data)
@@ -81,8 +81,9 @@ def _place(data: Any, given: Mapping[Name, float]) -> None:
     )  # fmt: skip
 
 
-def _changed(machine: Machine, given: Mapping[Name, float]) -> Any:
-    """The robot's model with what [plant] changes of it."""
+def _changed(robot: Robot, given: Mapping[Name, float], data: Any) -> Any:
+    """The robot's model with what [plant] changes of it. What `data` holds is overwritten."""
+    machine = robot.machine
     parts = {name: value for (table, name), value in given.items() if table == "plant"}
     if all(value == 1 for value in parts.values()):
         return machine.mujoco
@@ -98,4 +99,40 @@ def _changed(machine: Machine, given: Mapping[Name, float]) -> Any:
         m.actuator_biasprm[springs, 1] *= parts["stiffness"]
         m.actuator_biasprm[springs, 2] *= parts["damping"]
         m.actuator_ctrlrange[address.motors] *= parts["torque"]
+    for side, leg, hip in zip(machine.address_of, robot.legs, machine.hips, strict=True):
+        lower, *upper = _outwards_in(m, torso, leg)
+        m.body_pos[[lower, *upper][-1], 1] += (parts["hip_spacing"] - 1) * hip[1]
+        m.body_mass[upper] *= parts["upper_leg_mass"]
+        m.body_inertia[upper] *= parts["upper_leg_mass"]
+        _resize(m, m.geom(leg.foot).id, m.site(f"{side} sole").id, parts["foot_radius"])
+    if any(parts[name] != 1 for name in ("hip_spacing", "upper_leg_mass")):
+        import mujoco
+
+        mujoco.mj_setConst(m, data)  # masses of subtrees among others, by which it is sensed
     return m
+
+
+def _outwards_in(m: Any, torso: int, leg: Leg) -> list[int]:
+    """The bodies of a leg from that which slides to that which is hinged to the torso."""
+    bodies, body = [], int(m.jnt_bodyid[m.joint(leg.slide).id])
+    while body != torso:
+        bodies.append(body)
+        body = int(m.body_parentid[body])
+    return bodies
+
+
+def _resize(m: Any, foot: int, site: int, factor: float) -> None:
+    """A ball of another radius, with its lowest point, of a straight leg, where it was, and with it
+    the place that feels the ground."""
+    if factor == 1:
+        return
+    rise = (factor - 1) * float(m.geom_size[foot, 0])
+    for size in (m.geom_size, m.geom_rbound, m.geom_aabb):
+        size[foot] *= factor
+    m.site_size[site] *= factor
+    m.geom_pos[foot, 2] += rise
+    m.site_pos[site, 2] += rise
+    m.geom_sameframe[foot] = m.site_sameframe[site] = 0  # else their places may be its body's
+    body = m.geom_bodyid[foot]
+    boxes = slice(m.body_bvhadr[body], m.body_bvhadr[body] + m.body_bvhnum[body])
+    m.bvh_aabb[boxes, 3:] += 2 * abs(rise)  # in which contacts are sought: wide enough

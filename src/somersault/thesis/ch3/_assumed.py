@@ -14,9 +14,10 @@ from somersault.thesis.ch3._scatter import HELD_OUT, attempts, scatter
 _CHANGES: dict[str, tuple[float, ...]] = {
     "friction": (0.7, 1.3), "turning_friction": (0.5, 2.0), "stiffness": (0.8, 1.25),
     "damping": (0.5, 2.0), "roll_inertia": (0.8, 1.25), "yaw_inertia": (0.8, 1.25),
-    "torque": (0.8, 1.25),
+    "torque": (0.8, 1.25), "hip_spacing": (0.75, 1.5), "foot_radius": (0.6, 1.6),
+    "upper_leg_mass": (0.5, 1.5),
 }  # fmt: skip
-_COUNT = 24
+_COUNT = 16
 
 
 @cache
