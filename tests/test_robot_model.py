@@ -124,6 +124,20 @@ class TestSection34:
         assert not touch("frame", "left_rod")
 
 
+@pytest.mark.parametrize("name", ["biped", "biped_weighted"])
+def test_pictures_tell_front_from_back_and_left_from_right(name: str) -> None:
+    """By colour alone: what marks the front touches nothing and has no mass."""
+    model = mujoco.MjModel.from_xml_path(str(SHIPPED / f"{name}.xml"))
+    for part in ("cylinder", "rod", "foot"):
+        left, right = (model.geom(f"{side}_{part}") for side in SIDES)
+        assert np.abs(left.rgba - right.rgba).max() > 0.2
+    front, frame = model.geom("front"), model.geom("frame")
+    assert np.abs(front.rgba - frame.rgba).max() > 0.4
+    assert front.pos[0] + front.size[0] > frame.size[0]
+    assert np.all(front.size[1:] > frame.size[1:])
+    assert front.contype == front.conaffinity == 0
+
+
 def test_the_package_reads_the_same_robot() -> None:
     """Composite inertia of our own equations, at both ends of the legs."""
     model = so.load("biped")
