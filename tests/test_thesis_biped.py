@@ -10,7 +10,7 @@ import pytest
 from somersault import rigid
 from somersault.robot import run, tuck_servo
 from somersault.thesis import reproduce
-from somersault.thesis.ch3 import _airborne, _biped, _somersault, _strategy
+from somersault.thesis.ch3 import _airborne, _biped, _running, _somersault, _strategy
 from somersault.thesis.ch3._free_flight import reflown
 from somersault.thesis.ch3._runs import nominal
 from somersault.thesis.ch3._scatter import HELD_OUT, held_out
@@ -53,6 +53,16 @@ def test_separatrix_angle_is_where_motions_change_kind() -> None:
         c = np.array([0.0, np.cos(angle), np.sin(angle)])
         kinds.append(rigid.RigidMotion(inertias, c / inertias).kind)
     assert kinds == ["major", "minor"]
+
+
+def test_whether_it_falls_after_a_push_depends_on_the_moment(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """So that one moment would say little."""
+    monkeypatch.setattr(_running, "_PUSHES", {"sideways": (200.0, -300.0)})
+    fell = _running.falls.__wrapped__("sideways")
+    assert fell[200.0] == 0
+    assert 0 < fell[-300.0] < 12
 
 
 def test_a_robot_that_does_not_flip_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:

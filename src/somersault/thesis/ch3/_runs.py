@@ -33,15 +33,6 @@ def running() -> Run:
 
 
 @cache
-def pushed(newtons: float, sideways: bool) -> Run:
-    """Running, pushed for a tenth of a second at 3 s."""
-    from somersault.robot import Push
-
-    force = {"sideways" if sideways else "forward": newtons}
-    return run("biped", 8.0, Control(push=Push(at=3.0, **force)))
-
-
-@cache
 def at_speed(speed: float) -> Run:
     """Running at another speed."""
     return run("biped", 12.0, Control(running=Running(speed=speed)))
