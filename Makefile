@@ -33,6 +33,7 @@ bench: $(VENV)/.test
 	$(BIN)/python benchmarks/flights.py
 	$(BIN)/python benchmarks/ensembles.py
 	$(BIN)/python benchmarks/films.py
+	$(BIN)/python benchmarks/robots.py
 
 docs: $(VENV)/.docs
 	$(BIN)/mkdocs build --strict --quiet
