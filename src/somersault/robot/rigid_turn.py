@@ -12,7 +12,7 @@ import casadi as ca
 
 from somersault.robot._expressions import rotation
 
-_STEPS = 10  # for all of a flight, an error of 0.02 rad, and less the nearer its end
+_STEPS = 10  # for all of a flight, errors of some hundredths of a radian; less the nearer its end
 
 
 def facing(attitude: Any) -> Any:
