@@ -86,7 +86,7 @@ class Runs:
                 f"duration of a run is up to {_LONGEST:g} s, and here {self.duration:g}; change it"
             )
         _check_lengths(self.robot, self.control)
-        for table, what in (("flip", "somersault"), ("push", "push")):
+        for table, what in (("flip", "somersault"), ("change", "change"), ("push", "push")):
             at = getattr(self.control, table).at
             if self.duration <= at < NEVER:
                 raise SomersaultError(

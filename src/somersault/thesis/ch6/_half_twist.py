@@ -122,8 +122,8 @@ def fig_6_8() -> Result:
         ),
         statement(
             "fig6-8.singularity", of_6_8, "it passes through a singularity of the Euler angles "
-            "somersault, tilt and twist", "at about 1.2 s", f"tilt is at most {ours:.0f}° in this run: it "
-            "does not come near to one", bool(ours > 80),
+            "somersault, tilt and twist", "at about 1.2 s", f"tilt is at most {ours:.0f}° in this "
+            "run: it does not come near to one", bool(ours > 80),
             "In this sequence the singularity is at a tilt of 90°, on the robot's side, which the "
             "weight is there to avoid. In the sequence of yaw, pitch and roll every somersault "
             "passes through one.",
