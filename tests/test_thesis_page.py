@@ -165,12 +165,16 @@ def test_a_motion_has_film_page_and_numbers(tmp_path):
     av = pytest.importorskip("av")
     with av.open(str(tmp_path / "one/films/x.mp4")) as film:
         assert len(list(film.decode(video=0))) == 0.2 / 0.5 * 30 + 1
-    rows = list(csv.DictReader((tmp_path / "one/data/x-motion.csv").read_text().splitlines()))
+    rows = list(
+        csv.DictReader(
+            (tmp_path / "one/data/x-motion.csv").read_text(encoding="utf-8").splitlines()
+        )
+    )
     assert len(rows) == 5 + 5 + 3
     assert [row["motion"] for row in rows[4:6]] == ["a, little", "</script>"]
     last = flights["a, little"]
     assert float(rows[4]["somersault [rad]"]) == pytest.approx(last.landing.somersault, rel=1e-6)
     assert rows[12]["left_shoulder [rad or m]"] == ""  # a book has none
-    page = (tmp_path / "one/ch4.html").read_text()
+    page = (tmp_path / "one/ch4.html").read_text(encoding="utf-8")
     assert "From left to right: a, little, &lt;/script&gt;, book." in page
     assert 'src="films/x.mp4" poster="films/x.png"' in page

@@ -44,7 +44,7 @@ Kept = Literal["rudi", "rudi_gentle"]
 @cache
 def data(kept: Kept = "rudi") -> dict[str, Any]:
     """A motion as its file has it."""
-    return json.loads((files("somersault.thesis.ch6") / f"{kept}.json").read_text())
+    return json.loads((files("somersault.thesis.ch6") / f"{kept}.json").read_text(encoding="utf-8"))
 
 
 def landing_time(kept: Kept = "rudi") -> float:
