@@ -15,7 +15,7 @@ from somersault.ensembles import _run
 def test_a_run_that_will_take_very_long_is_noted_once(
     left: int, noted: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    now = iter([0.0, 1.0, 4.0, 8.0, 12.0])
+    now = iter([0.0, 1.0, 4.0, 8.0])  # the first chunk is done, and the others
     monkeypatch.setattr(_run, "time", SimpleNamespace(monotonic=lambda: next(now)))
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")

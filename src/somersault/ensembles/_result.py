@@ -304,7 +304,15 @@ class Ensemble:
         """
         from somersault.ensembles._landed import landings
 
-        landings(self.dataset, plan or self.plan, path, good, tolerance, most, **options)
+        landings(
+            self.dataset,
+            self.plan if plan is None else plan,
+            path,
+            good,
+            tolerance,
+            most,
+            **options,
+        )
 
 
 def check_out(given: str | Path) -> bool:

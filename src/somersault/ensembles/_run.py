@@ -96,10 +96,14 @@ class _Estimate:
 
     def __init__(self, left: int, called: str) -> None:
         self.left, self.done, self.noted, self.called = left, 0, False, called
-        self.begun = time.monotonic()
+        self.begun: float | None = None  # when the first were done: before, much is made ready
 
     def advance(self, more: int) -> None:
-        self.left, self.done = self.left - more, self.done + more
+        self.left -= more
+        if self.begun is None:
+            self.begun = time.monotonic()
+            return
+        self.done += more
         elapsed = time.monotonic() - self.begun
         remaining = elapsed / self.done * self.left
         if not self.noted and elapsed > _SETTLED and remaining > _LONG:
