@@ -16,6 +16,7 @@ import numpy as np
 
 from somersault._core.checks import by_name, text
 from somersault._core.errors import SomersaultError
+from somersault._core.numbers import number
 
 _MOST_CHARACTERS = 2_000
 _MOST_PARTS = 500
@@ -165,12 +166,13 @@ class Formula:
         >>> Formula("k * twist").renamed({"twist": "-twist"}).text
         'k * -twist'
         """
-        others = {name: text(f"names.{name}", x) for name, x in by_name("names", names).items()}
+        others = {
+            name: Formula(text(f"names.{name}", x)) for name, x in by_name("names", names).items()
+        }
 
         class Renaming(ast.NodeTransformer):
-            def visit_Call(
-                self, node: ast.Call
-            ) -> ast.AST:  # whose function is no name of a number
+            def visit_Call(self, node: ast.Call) -> ast.AST:
+                # Its function is no name of a number.
                 node.args = [self.visit(part) for part in node.args]
                 return node
 
@@ -182,11 +184,11 @@ class Formula:
 
             def _instead(self, node: ast.expr, name: Any) -> ast.AST:
                 if isinstance(name, str) and name in others:
-                    return ast.parse(others[name], mode="eval").body
+                    return others[name]._tree
                 return node
 
         tree = Renaming().visit(ast.parse(self.text.strip(), mode="eval").body)
-        if sign < 0:
+        if number("sign", sign) < 0:
             tree = ast.UnaryOp(ast.USub(), tree)
         return Formula(ast.unparse(tree))
 
