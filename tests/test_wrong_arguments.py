@@ -124,6 +124,7 @@ NOT_FOR_USERS = {
             "outboard_inertia",
             "placements",
             "spring_torques",
+            "wrapped",
         ),
         SYMBOLS,
     ),

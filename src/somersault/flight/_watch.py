@@ -18,6 +18,7 @@ import casadi as ca
 import numpy as np
 
 from somersault.attitude import SINGULAR, Axes, in_sequence, side
+from somersault.laws import wrapped
 
 ANGLES = ("somersault", "tilt", "twist")
 RATES = tuple(f"{name}_rate" for name in ANGLES)
@@ -129,8 +130,8 @@ def _closest(here: list[Any], carried: list[Any]) -> list[Any]:
     """Angles `here` or their other representation, with the whole turns that bring either nearest
     to what is `carried`."""
     there = [here[0] + np.pi, np.pi - here[1], here[2] + np.pi]
-    by = [_wrapped(a - b) for a, b in zip(here, carried, strict=True)]
-    other = [_wrapped(a - b) for a, b in zip(there, carried, strict=True)]
+    by = [wrapped(a - b) for a, b in zip(here, carried, strict=True)]
+    other = [wrapped(a - b) for a, b in zip(there, carried, strict=True)]
     crosses = sum(d * d for d in other) < sum(d * d for d in by)
     # Not `if_else`: it multiplies, and a number that is not finite would spread.
     return [a + one + crosses * (two - one) for a, one, two in zip(carried, by, other, strict=True)]
@@ -160,10 +161,6 @@ def _sense_past(start: Any, end: Any, leaving: Any, arriving: Any) -> Any:
 def _chosen(condition: Any, one: Any, other: Any) -> Any:
     """One or another, both of them finite."""
     return other + condition * (one - other)
-
-
-def _wrapped(angle: Any) -> Any:
-    return angle - 2 * np.pi * ca.floor(angle / (2 * np.pi) + 0.5)
 
 
 def named(

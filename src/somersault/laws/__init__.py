@@ -5,8 +5,8 @@ time, and then holds until the next tick. The behaviours `torque_law`, `rate_law
 joints have one each (`somersault.JointTakeoff`).
 """
 
-from somersault.laws._formula import Formula
+from somersault.laws._formula import Formula, wrapped
 from somersault.laws._mirror import mirrored, mirrored_name
 from somersault.laws._noise import STATE, Noise, seeds
 
-__all__ = ["STATE", "Formula", "Noise", "mirrored", "mirrored_name", "seeds"]
+__all__ = ["STATE", "Formula", "Noise", "mirrored", "mirrored_name", "seeds", "wrapped"]

@@ -22,8 +22,26 @@ _MOST_CHARACTERS = 2_000
 _MOST_PARTS = 500
 
 
-def _whole_turns(angle: Any) -> Any:
-    return 2 * np.pi * ca.floor(angle / (2 * np.pi) + 0.5)
+def wrapped(angle: Any) -> Any:
+    """An angle without its whole turns.
+
+    Parameters
+    ----------
+    angle : casadi.SX or float
+        rad.
+
+    Returns
+    -------
+    casadi.SX or float
+        From −π to below π.
+
+    Examples
+    --------
+    >>> from somersault.laws import wrapped
+    >>> round(wrapped(7.0), 4)
+    0.7168
+    """
+    return angle - 2 * np.pi * ca.floor(angle / (2 * np.pi) + 0.5)
 
 
 _FUNCTIONS: dict[str, tuple[int, Callable[..., Any]]] = {
@@ -36,7 +54,7 @@ _FUNCTIONS: dict[str, tuple[int, Callable[..., Any]]] = {
     "min": (2, ca.fmin),
     "max": (2, ca.fmax),
     "clip": (3, lambda x, low, high: ca.fmin(ca.fmax(x, low), high)),
-    "wrap": (1, lambda angle: angle - _whole_turns(angle)),
+    "wrap": (1, wrapped),
     "where": (3, lambda condition, yes, no: ca.if_else(condition, yes, no)),
 }
 _OPERATIONS: dict[type[ast.AST], Callable[..., Any]] = {

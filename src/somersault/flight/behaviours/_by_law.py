@@ -53,13 +53,14 @@ class ByLaw(JointTakeoff):
         assert isinstance(plan, ByLaw)
         every, delay = (number(f"{where}: {n}", getattr(self, n)) for n in ("every", "delay"))
         _check_times(where, every, delay)
-        idle = sorted(set(plan.gains) - Formula(plan.law).names)
+        names = Formula(plan.law).names
+        idle = sorted(set(plan.gains) - names)
         if idle:
             raise SomersaultError(
                 f"{where} has the gain {idle[0]}, which its law {plan.law!r} does not have; "
                 "correct one of them"
             )
-        silent = sorted(set(plan.noise) - Formula(plan.law).names)
+        silent = sorted(set(plan.noise) - names)
         if silent:
             raise SomersaultError(
                 f"{where} senses {silent[0]} with noise, but its law {plan.law!r} does not have "

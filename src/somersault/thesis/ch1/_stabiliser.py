@@ -18,34 +18,42 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _WHERE = "§1.1.1"
-_MODEL, _ARMS, _RATE = "furrer", 1.3, 8.64  # arm angle (rad) and somersault rate (rad/s) of ch. 4
-_MOVES = "antisymmetric shoulder"
-_TURN = 2 * np.pi  # of a somersault, in units of 1/Ω
+MODEL, ARMS, RATE = "furrer", 1.3, 8.64  # arm angle (rad) and somersault rate (rad/s) of ch. 4
+MOVES = "antisymmetric shoulder"
+TURN = 2 * np.pi  # of a somersault, in units of 1/Ω
 _EVERY = 0.002  # s between ticks of the flights
 # Gains by twist and twist rate (Ω, 1): of the flights, and nearly those for the longest delay.
-_TWIST, _TWIST_RATE = -1.5, -1.5
-_PATIENT = -0.76, -1.25
+QUICK, PATIENT = (-1.5, -1.5), (-0.76, -1.25)
 _SECONDS = 3.0
 
 
 @cache
-def _layout(arms: float = _ARMS) -> LinearSpin:
-    return spin(_MODEL, 2, {"shoulder": arms}).linear()
+def layout(arms: float = ARMS) -> LinearSpin:
+    return spin(MODEL, 2, {"shoulder": arms}).linear()
 
 
-def _loop(twist: float = 0.0, twist_rate: float = 0.0, **more: float) -> DelayedFeedback:
+def loop(twist: float = 0.0, twist_rate: float = 0.0, **more: float) -> DelayedFeedback:
     gains = {"twist": twist, "twist_rate": twist_rate, **more}
-    return feedback(_layout(), _MOVES, "rate", gains)
+    return feedback(layout(), MOVES, "rate", gains)
 
 
-def _growth(arms: float = _ARMS) -> float:
+def _growth(arms: float = ARMS) -> float:
     """Of the rigid layout, in units of Ω."""
-    return spin(_MODEL, 2, {"shoulder": arms}).linear(lock="all").growth_rate
+    return spin(MODEL, 2, {"shoulder": arms}).linear(lock="all").growth_rate
 
 
-def longest(arms: float = _ARMS) -> float:
+def longest(arms: float = ARMS) -> float:
     """The longest delay, in somersaults, that any arm rate by twist and twist rate can have."""
-    return float(np.sqrt(2) / _growth(arms) / _TURN)
+    return float(np.sqrt(2) / _growth(arms) / TURN)
+
+
+def moved(gains: tuple[float, float], every: float, ticks: int, **more: float) -> JointTakeoff:
+    """Arms that move at a rate by twist and twist rate, so many ticks later."""
+    twist, twist_rate = gains
+    return JointTakeoff.rate_law(
+        angle=ARMS, law="k * twist + c * twist_rate", every=every, delay=ticks * every,
+        gains={"k": twist * RATE, "c": twist_rate}, **more,
+    )  # fmt: skip
 
 
 @cache
@@ -55,43 +63,33 @@ def _map() -> tuple[Array, Array, Array]:
     delays = np.zeros((len(rate), len(twist)))
     for i, c in enumerate(rate):
         for j, k in enumerate(twist):
-            ranges = _loop(float(k), float(c)).stable_delays(_TURN)
-            delays[i, j] = ranges[0][1] / _TURN if ranges and ranges[0][0] == 0 else 0.0
+            ranges = loop(float(k), float(c)).stable_delays(TURN)
+            delays[i, j] = ranges[0][1] / TURN if ranges and ranges[0][0] == 0 else 0.0
     return twist, rate, delays
 
 
 @cache
 def _flown(delay: float, law: bool = True) -> Flight:
     """The layout with arms that move by the law after a delay (somersaults), or stay."""
-    ticks = round(delay * _TURN / _RATE / _EVERY)
-    arms = (
-        JointTakeoff.rate_law(
-            angle=_ARMS, law="k * twist + c * twist_rate", every=_EVERY, delay=ticks * _EVERY,
-            gains={"k": _TWIST * _RATE, "c": _TWIST_RATE},
-        )
-        if law
-        else JointTakeoff.locked(angle=_ARMS)
-    )  # fmt: skip
-    momentum = _layout().spin.principal_inertias[1] * _RATE
+    ticks = round(delay * TURN / RATE / _EVERY)
+    arms = moved(QUICK, _EVERY, ticks) if law else JointTakeoff.locked(angle=ARMS)
+    momentum = layout().spin.principal_inertias[1] * RATE
     takeoff = Takeoff(twist=0.01, angular_momentum=[0.0, momentum, 0.0], joints={"shoulder": arms})
-    return fly(_MODEL, takeoff, _SECONDS, samples=301)
+    return fly(MODEL, takeoff, _SECONDS, samples=301)
 
 
 def stabiliser() -> Result:
     """How late a law may act, and what it has to sense."""
     twist, rate, delays = _map()
     best = longest()
-    by_twist = [_loop(float(k)).stable_delays() for k in np.linspace(-5, 5, 201)]
-    by_rate = [_loop(0.0, float(c)).stable_delays() for c in np.linspace(-5, 5, 201)]
+    by_twist = [loop(float(k)).stable_delays() for k in np.linspace(-5, 5, 201)]
+    by_rate = [loop(0.0, float(c)).stable_delays() for c in np.linspace(-5, 5, 201)]
     arms = [longest(float(x)) for x in np.linspace(0.0, 1.6, 33)]
-    limit = -(_growth() ** 2) / _loop(1.0).polynomials[1][-1]
-    ours = _loop(_TWIST, _TWIST_RATE).stable_delays()[0][1] / _TURN
+    limit = -(_growth() ** 2) / loop(1.0).polynomials[1][-1]
+    ours = loop(*QUICK).stable_delays()[0][1] / TURN
     early, late, still = _flown(0.6 * ours), _flown(1.3 * ours), _flown(0.0, law=False)
     home, away = (
-        [
-            bool(_loop(_TWIST, _TWIST_RATE, **{_MOVES: sign * k}).stable_delays())
-            for k in (0.01, 0.03, 0.1)
-        ]
+        [bool(loop(*QUICK, **{MOVES: sign * k}).stable_delays()) for k in (0.01, 0.03, 0.1)]
         for sign in (-1.0, 1.0)
     )
     claims = (
@@ -102,8 +100,8 @@ def stabiliser() -> Result:
             "with the arms from 0 to 1.6 rad. The delay itself, not an approximation of it.",
         ),
         number(
-            "sec1-1.time", _WHERE, "that is about 200 ms", 0.2, best * _TURN / _RATE, "s", 0.02,
-            f"At {_RATE} rad/s.",
+            "sec1-1.time", _WHERE, "that is about 200 ms", 0.2, best * TURN / RATE, "s", 0.02,
+            f"At {RATE} rad/s.",
         ),
         statement(
             "sec1-1.gains", _WHERE, "a controller of arm abduction rates could be used to "
@@ -147,7 +145,7 @@ def stabiliser() -> Result:
         "Yeadon: arms driven by the sensed twist stabilise the layout if they respond within 0.28 "
         "of a somersault.",
         "Left: the longest delay with which arm rates by twist and twist rate stabilise Furrer's "
-        f"layout (arms at {_ARMS} rad); none is longer than √2/σ. Right: how fast a twist grows or "
+        f"layout (arms at {ARMS} rad); none is longer than √2/σ. Right: how fast a twist grows or "
         "decays as the delay becomes longer, and without a law.",
         claims,
         _draw(twist, rate, delays),
@@ -171,7 +169,7 @@ def _draw(twist: Array, rate: Array, delays: Array) -> Figure:
     shades = LinearSegmentedColormap.from_list("delays", look.LIGHT_TO_DARK)
     filled = ax.contourf(twist, rate, delays, levels, cmap=shades)
     picture.colorbar(filled, ax=ax, label="longest delay, somersaults")
-    laws = (((_TWIST, _TWIST_RATE), look.VERMILION, "flown"), (_PATIENT, look.GREEN, "patient"))
+    laws = ((QUICK, look.VERMILION, "flown"), (PATIENT, look.GREEN, "patient"))
     for (k, c), color, words in laws:
         ax.plot(k, c, "o", color=color, mec="white")
         look.label(ax, k + 0.07, c, words, color)
@@ -179,7 +177,7 @@ def _draw(twist: Array, rate: Array, delays: Array) -> Figure:
     ax.set_title("Arm rates by twist and twist rate")
     lags = np.linspace(0.005, 0.4, 80)
     for (k, c), color, words in laws:
-        growth = [_loop(k, c).growth_rate(float(x * _TURN)) for x in lags]
+        growth = [loop(k, c).growth_rate(float(x * TURN)) for x in lags]
         right.plot(lags, growth, color=color)
         look.label(right, lags[5], growth[5], words, color, va="bottom")
     right.axhline(0, color=look.GREY, lw=0.8)

@@ -10,54 +10,54 @@ import numpy as np
 from somersault._core.array import Array
 from somersault.ensembles import Vary, ended_by, ensemble, fraction
 from somersault.flight import Flight, JointTakeoff, Takeoff, flights, fly
-from somersault.stability import DelayedFeedback, LinearSpin, feedback, spin
+from somersault.stability import DelayedFeedback, LinearSpin, feedback
 from somersault.thesis._claims import statement
 from somersault.thesis._entries import Result, Table
 from somersault.thesis._motion import Motion
+from somersault.thesis.ch1._stabiliser import (
+    ARMS,
+    MODEL,
+    MOVES,
+    PATIENT,
+    QUICK,
+    RATE,
+    TURN,
+    layout,
+    longest,
+    loop,
+    moved,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
 _WHERE = "§7.4"
-_MODEL, _ARMS, _RATE = "furrer", 1.3, 8.64  # arm angle (rad) and somersault rate (rad/s) of ch. 4
 _STIFFNESS, _DAMPING = 1.2, 0.13  # K_sh and B_sh; the damper is figure 4-7's 0.1 kg m²
-_MOVES = "antisymmetric shoulder"
-_TURN = 2 * np.pi  # of a somersault, in units of 1/Ω
-_SOMERSAULT = _TURN / _RATE  # s
+_SOMERSAULT = TURN / RATE  # s
 _TICKS = 36  # in a somersault
 _EVERY = _SOMERSAULT / _TICKS
 _MANY = 10  # somersaults
 _SIZE, _SEED, _SCATTER = 200, 4, 0.03  # starts, and the deviation of tilt and twist, rad
-# Arm rates by twist and twist rate, gains in units of Ω and 1: a quick law, and the one of those
-# with the longest delays (`sec1-1`).
-_QUICK, _PATIENT = (-1.5, -1.5), (-0.76, -1.25)
+_FASTEST = 10.0  # rad/s of arms that a law alone moves
 _HELD = -0.1, -0.2  # torques of each arm by the twist, kg m² Ω²
-
-
-def _rated(twist: float, twist_rate: float, ticks: int) -> JointTakeoff:
-    """Arms that a law alone moves."""
-    return JointTakeoff.rate_law(
-        angle=_ARMS, law="k * twist + c * twist_rate", every=_EVERY, delay=ticks * _EVERY,
-        gains={"k": twist * _RATE, "c": twist_rate}, most_rate=10.0,
-    )  # fmt: skip
 
 
 def _sprung(gain: float, ticks: int, damping: float = _DAMPING) -> JointTakeoff:
     """Arms on springs and dampers, with a torque by the twist."""
     return JointTakeoff.torque_law(
-        angle=_ARMS, K=_STIFFNESS, B=damping, hold=True, law="k * twist", every=_EVERY,
-        delay=ticks * _EVERY, gains={"k": gain * _RATE**2},
+        angle=ARMS, K=_STIFFNESS, B=damping, hold=True, law="k * twist", every=_EVERY,
+        delay=ticks * _EVERY, gains={"k": gain * RATE**2},
     )  # fmt: skip
 
 
 def _cases() -> dict[str, JointTakeoff]:
     return {
-        "rigid": JointTakeoff.locked(angle=_ARMS),
-        "passive": JointTakeoff.sprung(angle=_ARMS, K=_STIFFNESS, hold=True),
-        "passive, damped": JointTakeoff.sprung(angle=_ARMS, K=_STIFFNESS, B=_DAMPING, hold=True),
-        "active, 2/36 late": _rated(*_QUICK, 2),
-        "active, 8/36 late": _rated(*_PATIENT, 8),
+        "rigid": JointTakeoff.locked(angle=ARMS),
+        "passive": JointTakeoff.sprung(angle=ARMS, K=_STIFFNESS, hold=True),
+        "passive, damped": JointTakeoff.sprung(angle=ARMS, K=_STIFFNESS, B=_DAMPING, hold=True),
+        "active, 2/36 late": moved(QUICK, _EVERY, 2, most_rate=_FASTEST),
+        "active, 8/36 late": moved(PATIENT, _EVERY, 8, most_rate=_FASTEST),
         "both, 2/36 late": _sprung(_HELD[0], 2),
         "both, 8/36 late": _sprung(_HELD[1], 8),
         "both, 12/36 late": _sprung(_HELD[1], 12),
@@ -73,26 +73,19 @@ def _lives() -> dict[str, xr.Dataset]:
     }
     found = {}
     for name, arms in _cases().items():
-        takeoff = Takeoff(spin=_RATE, joints={"shoulder": arms})
-        one = flights(_MODEL, takeoff, _MANY * _SOMERSAULT, report=["twist"], until="quarter twist")
+        takeoff = Takeoff(spin=RATE, joints={"shoulder": arms})
+        one = flights(MODEL, takeoff, _MANY * _SOMERSAULT, report=["twist"], until="quarter twist")
         found[name] = ensemble(one, vary=vary, size=_SIZE, seed=_SEED).dataset
     return found
 
 
-def _layout(stiffness: float = 0.0, damping: float = 0.0) -> LinearSpin:
-    bare = spin(_MODEL, 2, {"shoulder": _ARMS})
-    return bare.linear({"shoulder": stiffness}, {"shoulder": damping})
+def _layout(stiffness: float, damping: float = 0.0) -> LinearSpin:
+    return layout().spin.linear({"shoulder": stiffness}, {"shoulder": damping})
 
 
 def _held(gain: float, damping: float = _DAMPING) -> DelayedFeedback:
     """The sprung and damped layout with a torque by the twist."""
-    return feedback(_layout(_STIFFNESS, damping), _MOVES, "torque", {"twist": gain})
-
-
-def _active(gains: tuple[float, float]) -> DelayedFeedback:
-    """The layout without springs, with an arm rate by twist and twist rate."""
-    named = dict(zip(("twist", "twist_rate"), gains, strict=True))
-    return feedback(_layout(), _MOVES, "rate", named)
+    return feedback(_layout(_STIFFNESS, damping), MOVES, "torque", {"twist": gain})
 
 
 def _arms_over_twist() -> tuple[Array, Array]:
@@ -101,12 +94,12 @@ def _arms_over_twist() -> tuple[Array, Array]:
     part = _layout(_STIFFNESS).subsystem("tilt")
     names = part.coordinates
     passive = [
-        mode.shape[names.index(_MOVES)] / mode.shape[names.index("twist")]
+        mode.shape[names.index(MOVES)] / mode.shape[names.index("twist")]
         for mode in part.modes
         if mode.name != "stroboscopic" and mode.root.imag > 0
     ]
-    late, (k, c) = 2 * _TURN / _TICKS, _QUICK
-    roots = _active(_QUICK).roots(late, 4)
+    late, (k, c) = 2 * TURN / _TICKS, QUICK
+    roots = loop(*QUICK).roots(late, 4)
     active = [(k + c * s) * np.exp(-s * late) / s for s in roots if 0.1 < s.imag < 3]
     return np.array(passive), np.array(active)
 
@@ -115,12 +108,12 @@ def passive_and_active() -> Result:
     """The same starts, held by springs, by a law, and by both."""
     lives = _lives()
     share = {name: _share(data) for name, data in lives.items()}
-    damped = [_held(gain).stable_delays(2 * _TURN) for gain in _HELD]
-    alone = float(np.sqrt(2) / _layout_growth() / _TURN)
-    longest = max(
-        (ranges[0][1] / _TURN, gain)
+    damped = [_held(gain).stable_delays(2 * TURN) for gain in _HELD]
+    alone = longest()
+    latest = max(
+        (ranges[0][1] / TURN, gain)
         for gain in np.linspace(-0.4, -0.01, 40)
-        if (ranges := _held(float(gain)).stable_delays(2 * _TURN))
+        if (ranges := _held(float(gain)).stable_delays(2 * TURN))
     )
     passive, active = _arms_over_twist()
     ahead = [np.degrees(np.angle(x)) for x in (passive, active)]
@@ -161,15 +154,15 @@ def passive_and_active() -> Result:
         statement(
             "sec7-4.cheapest", _WHERE, "the cheapest feedback that makes damped shoulders stable",
             "not said", f"a torque of −{-_HELD[0]:g} kg m² Ω² times the twist of each arm, which "
-            f"makes {_HELD[0] * _RATE**2:.1f} N m/rad: stable with delays "
+            f"makes {_HELD[0] * RATE**2:.1f} N m/rad: stable with delays "
             + " and ".join(_range(r) for r in damped[0]), bool(damped[0]),
             "Ours. The twist angle alone is sensed, by which no law holds arms without springs.",
         ),
         statement(
             "sec7-4.late", _WHERE, "a law on sprung and damped arms may act later than any law "
             "could alone", "not said",
-            f"up to {longest[0]:.2f} of a somersault with a gain of {longest[1]:.2f} kg m² Ω², "
-            f"{alone:.2f} alone", longest[0] > 1.5 * alone,
+            f"up to {latest[0]:.2f} of a somersault with a gain of {latest[1]:.2f} kg m² Ω², "
+            f"{alone:.2f} alone", latest[0] > 1.5 * alone,
             "Ours. Springs make the slow oscillation, dampers take from one mode and give to the "
             "other, and a late torque by the twist is the damper that the other one lacks.",
         ),
@@ -184,7 +177,7 @@ def passive_and_active() -> Result:
     )  # fmt: skip
     return Result(
         "The thesis compares an active and a passive layout in words.",
-        f"The same {_SIZE} starts in Furrer's layout with the arms at {_ARMS} rad, until a quarter "
+        f"The same {_SIZE} starts in Furrer's layout with the arms at {ARMS} rad, until a quarter "
         f"twist or {_MANY} somersaults. Left: how many still go on. Right: growth of small "
         "motions with the delay of the law.",
         claims,
@@ -194,18 +187,13 @@ def passive_and_active() -> Result:
     )
 
 
-@cache
-def _layout_growth() -> float:
-    return spin(_MODEL, 2, {"shoulder": _ARMS}).linear(lock="all").growth_rate
-
-
 def _as_spring() -> float:
     """How far the roots of a spring and of a torque by the arm's own angle are apart, Ω."""
     sprung = _layout(_STIFFNESS)
-    arm = sprung.coordinates.index(_MOVES)
+    arm = sprung.coordinates.index(MOVES)
     gain = -sprung.K_springs[arm, arm] / 2  # of each arm
-    law = feedback(_layout(), _MOVES, "torque", {_MOVES: gain}).roots(0.0)
-    springs = feedback(sprung, _MOVES, "torque", {"twist": 0.0}).roots(0.0)
+    law = feedback(layout(), MOVES, "torque", {MOVES: gain}).roots(0.0)
+    springs = feedback(sprung, MOVES, "torque", {"twist": 0.0}).roots(0.0)
     return float(max(np.abs(springs - root).min() for root in law))
 
 
@@ -218,7 +206,7 @@ def _shown() -> dict[str, Flight]:
     cases = _cases()
     return {
         title: fly(
-            _MODEL, Takeoff(spin=_RATE, tilt=0.03, twist=0.03, joints={"shoulder": cases[name]}),
+            MODEL, Takeoff(spin=RATE, tilt=0.03, twist=0.03, joints={"shoulder": cases[name]}),
             5 * _SOMERSAULT, samples=361,
         )
         for title, name in names.items()
@@ -238,7 +226,7 @@ def _listed(values: Array, digits: int = 0) -> str:
 
 
 def _range(ends: tuple[float, float]) -> str:
-    return f"from {ends[0] / _TURN:.2f} to {ends[1] / _TURN:.2f} somersaults"
+    return f"from {ends[0] / TURN:.2f} to {ends[1] / TURN:.2f} somersaults"
 
 
 def _table(lives: dict[str, xr.Dataset], share: dict[str, float]) -> Table:
@@ -274,12 +262,12 @@ def _draw(lives: dict[str, xr.Dataset]) -> Figure:
     lags = np.linspace(0.005, 0.7, 70)
     held = ((_HELD[0], look.GREEN, "both, −0.1", 0.56), (_HELD[1], look.PURPLE, "both, −0.2", 0.3))
     for gain, color, words, at in held:
-        growth = [_held(gain).growth_rate(float(x * _TURN)) for x in lags]
+        growth = [_held(gain).growth_rate(float(x * TURN)) for x in lags]
         right.plot(lags, growth, color=color)
         look.label(right, at, growth[round(at / 0.01)] - 0.01, words, color, va="top")
-    laws = ((_QUICK, look.VERMILION, "quick"), (_PATIENT, look.ORANGE, "patient"))
+    laws = ((QUICK, look.VERMILION, "quick"), (PATIENT, look.ORANGE, "patient"))
     for gains, color, words in laws:
-        growth = [_active(gains).growth_rate(float(x * _TURN)) for x in lags]
+        growth = [loop(*gains).growth_rate(float(x * TURN)) for x in lags]
         right.plot(lags, growth, color=color)
         look.label(right, lags[26], growth[26], f"active, {words}", color, va="bottom")
     right.axhline(0, color=look.GREY, lw=0.8)
