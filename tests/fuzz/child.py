@@ -23,6 +23,7 @@ import numpy as np
 
 import somersault as so
 
+from .forked import programs_forked
 from .inputs import Input, spoilt
 from .readers import READERS, Reader, flown, one_sentence
 
@@ -44,10 +45,11 @@ def main() -> None:
         sys.unraisablehook = lambda trouble: _UNSEEN.append(repr(trouble.exc_value))
         _bound_memory()
         _tell(told, number=first - 1)
-        for number in range(first, last):
-            rng = np.random.default_rng([seed, number])
-            signal.setitimer(signal.ITIMER_PROF, LONGEST)  # its signal ends the process
-            _tell(told, number=number, **outcome(reader, spoilt(reader, seed, number), rng))
+        with programs_forked():
+            for number in range(first, last):
+                rng = np.random.default_rng([seed, number])
+                signal.setitimer(signal.ITIMER_PROF, LONGEST)  # its signal ends the process
+                _tell(told, number=number, **outcome(reader, spoilt(reader, seed, number), rng))
 
 
 def _tell(told: TextIO, **what: Any) -> None:
@@ -71,7 +73,8 @@ def _warm_up(reader: Reader) -> None:
 
 def _bound_memory() -> None:
     taken = int(Path("/proc/self/statm").read_text().split()[0]) * os.sysconf("SC_PAGE_SIZE")
-    resource.setrlimit(resource.RLIMIT_AS, (taken + MEMORY, taken + MEMORY))
+    _, most = resource.getrlimit(resource.RLIMIT_AS)  # which a forked program may set anew
+    resource.setrlimit(resource.RLIMIT_AS, (taken + MEMORY, most))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 

@@ -12,14 +12,28 @@ import os
 import re
 import sys
 import warnings
-from collections.abc import Callable, Iterable, Sequence
-from typing import NoReturn, TextIO
+from importlib import import_module
 
 from somersault._core.errors import SomersaultError, SomersaultWarning
 from somersault._core.stages import told, wipe
-from somersault.cli import _ensemble, _equations, _fly, _map, _models, _reproduce, _run, _stability
 
-_COMMANDS = (_models, _stability, _map, _fly, _run, _ensemble, _equations, _reproduce)
+TYPE_CHECKING = False  # typing's, which takes time to import
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+    from typing import Any, NoReturn, TextIO
+
+# Each command and what it is about; the rest stands in a module of its name, which is imported when
+# the command is given.
+_COMMANDS = {
+    "models": "The models that ship, what was understood of a file, athletes, any model as MJCF.",
+    "stability": "Is a steady spin of a model stable, how fast does it go wrong, and why.",
+    "map": "The momentum sphere of a rigid model: its energies, separatrix and kinds of motion.",
+    "fly": "One free flight, from a takeoff described in a TOML file.",
+    "run": "A robot that runs on two legs, and somersaults on the way.",
+    "ensemble": "Many flights that differ in what a TOML file varies; goes on if stopped.",
+    "equations": "The equations of motion of a small model as LaTeX, of any model as C.",
+    "reproduce": "Regenerate the figures and tables of the thesis, and check its every number.",
+}
 
 
 class _Parser(argparse.ArgumentParser):
@@ -32,6 +46,24 @@ class _Parser(argparse.ArgumentParser):
             message = f"{needed[1]} is missing{in_front}"
         _say(f"{self.prog}: {message}; see {self.prog} --help")
         raise SystemExit(2)
+
+
+class _CommandParser(_Parser):
+    """The parser of one command, filled in when the command is given."""
+
+    def __init__(self, *given: Any, **named: Any) -> None:
+        super().__init__(*given, formatter_class=_Help, **named)
+        self._filled = False
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Parse the words behind the command."""
+        if not self._filled:
+            self._filled = True
+            command = import_module(f"somersault.cli._{self.prog.split()[-1]}")
+            self.epilog = command.EXAMPLES
+            command.add_arguments(self)
+            self.set_defaults(run=command.run)
+        return super().parse_known_args(args, namespace)
 
 
 class _Help(argparse.RawDescriptionHelpFormatter):
@@ -64,18 +96,10 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"somersault {__version__}")
     commands = parser.add_subparsers(
-        title="commands", metavar="COMMAND", required=True, parser_class=_Parser
+        title="commands", metavar="COMMAND", required=True, parser_class=_CommandParser
     )
-    for command in _COMMANDS:
-        added = commands.add_parser(
-            command.NAME,
-            help=command.HELP,
-            description=command.HELP,
-            epilog=command.EXAMPLES,
-            formatter_class=_Help,
-        )
-        command.add_arguments(added)
-        added.set_defaults(run=command.run)
+    for name, about in _COMMANDS.items():
+        commands.add_parser(name, help=about, description=about)
     return parser
 
 

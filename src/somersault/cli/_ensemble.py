@@ -17,8 +17,6 @@ from somersault.cli._outputs import (
     written_lines,
 )
 
-NAME = "ensemble"
-HELP = "Many flights that differ in what a TOML file varies; goes on where it was stopped."
 EXAMPLES = """examples:
   somersault ensemble examples/layout_map.toml --out map.zarr
   somersault ensemble examples/layout_map.toml --out map.nc --plot map.png

@@ -5,8 +5,6 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-NAME = "equations"
-HELP = "The equations of motion of a small model as LaTeX, of any model as C."
 EXAMPLES = """examples:
   somersault equations book
   somersault equations simplest --out simplest.tex

@@ -18,8 +18,6 @@ from somersault.cli._outputs import (
 if TYPE_CHECKING:
     from somersault.flight import Flight
 
-NAME = "fly"
-HELP = "One free flight, from a takeoff described in a TOML file."
 EXAMPLES = """examples:
   somersault fly examples/layout.toml
   somersault fly examples/layout.toml --out layout.nc --json

@@ -12,8 +12,6 @@ from somersault.cli._outputs import PICTURE_ENDINGS, PICTURES, Writing, save_pic
 if TYPE_CHECKING:
     from somersault._core.array import Array
 
-NAME = "map"
-HELP = "The momentum sphere of a model held rigid: its energies, separatrix and kinds of motion."
 EXAMPLES = """examples:
   somersault map human_layout --out layout.png
   somersault map furrer --pose shoulder=1.3 --out furrer.svg --energies 9

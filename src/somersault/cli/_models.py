@@ -15,8 +15,6 @@ from somersault.cli._outputs import require_other
 if TYPE_CHECKING:
     from somersault.model import Joint, Model
 
-NAME = "models"
-HELP = "The models that ship, or what was understood of a file; athletes; any model as MJCF."
 EXAMPLES = """examples:
   somersault models
   somersault models my_robot.urdf

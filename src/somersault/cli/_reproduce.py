@@ -5,8 +5,6 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-NAME = "reproduce"
-HELP = "Regenerate the figures and tables of the thesis, and check its every number."
 EXAMPLES = """examples:
   somersault reproduce
   somersault reproduce ch4 --out report

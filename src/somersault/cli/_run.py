@@ -18,8 +18,6 @@ from somersault.cli._outputs import (
 if TYPE_CHECKING:
     from somersault.robot import Run, Runs
 
-NAME = "run"
-HELP = "A robot that runs on two legs, and somersaults on the way."
 EXAMPLES = """examples:
   somersault run biped
   somersault run biped --flip at=5 --video flip.mp4

@@ -12,8 +12,6 @@ from somersault.cli._assignments import assignments
 if TYPE_CHECKING:
     from somersault.stability import LinearSpin
 
-NAME = "stability"
-HELP = "Is a steady spin of a model stable, how fast does it go wrong, and why."
 EXAMPLES = """examples:
   somersault stability furrer --pose shoulder=1.4 --stiffness shoulder=1.2
   somersault stability furrer --pose left_shoulder=1.4 right_shoulder=-1.4 --lock all
