@@ -52,7 +52,7 @@ class _CommandParser(_Parser):
     """The parser of one command, filled in when the command is given."""
 
     def __init__(self, *given: Any, **named: Any) -> None:
-        super().__init__(*given, formatter_class=_Help, **named)
+        super().__init__(*given, **{"formatter_class": _Help} | named)
         self._filled = False
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
