@@ -163,6 +163,9 @@ from .model import (
     named_pose as named_pose,
 )
 from .model import (
+    sagittal as sagittal,
+)
+from .model import (
     shipped as shipped,
 )
 from .model import (

@@ -24,7 +24,7 @@ EXAMPLES = """examples:
   somersault models --athlete measurements=me.txt --out me.xml
 
 --athlete takes the keys of [athlete] in a SPEC: height (m) and mass (kg), or a file of measurements
-in yeadon's format; sex, densities, shoulders, knees, name: see docs/athletes.md."""
+in yeadon's format; sex, densities, shoulders, knees, ankles, name: see docs/athletes.md."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

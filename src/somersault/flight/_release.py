@@ -84,9 +84,9 @@ def released(
         raise SomersaultError(f"this is a swing of {swung.model.name}, not of the mount given")
     q, u = swung.q[-1], swung.u[-1]
     turn, origin, omega, velocity = _base_motion(mount, q, u)
-    ahead = len(mount.carrier.joints)
     rider = mount.rider
-    own, own_rates = q[ahead:], u[ahead:]
+    places = [mount.held.coordinate_slice(joint.name).start for joint in rider.joints]
+    own, own_rates = q[places], u[places]
     still = np.concatenate([omega, velocity, own_rates])
     linear = Equations(rider).momentum(own, still)[3:] / rider.mass
     setups = by_name("joints", joints)
@@ -111,8 +111,9 @@ def released(
 def _base_motion(mount: Mount, q: Array, u: Array) -> tuple[Array, Array, Array, Array]:
     """The rider's base turned in the ground's axes, its origin there, and its angular velocity and
     its origin's velocity in its own axes."""
-    (carrier, *_), (foot, *_) = body_frames(mount.held, q)
-    (spin, *_), (rate, *_) = body_velocities(mount.held, q, u)
+    turns, feet = body_frames(mount.held, q)
+    spins, rates = body_velocities(mount.held, q, u)
+    carrier, foot, spin, rate = (x[mount.place] for x in (turns, feet, spins, rates))
     turn, arm = carrier @ np.array(mount.rotation), carrier @ np.array(mount.position)
     return turn, foot + arm, turn.T @ spin, turn.T @ (rate + np.cross(spin, arm))
 

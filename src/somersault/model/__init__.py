@@ -24,6 +24,7 @@ from somersault.model._mounted import Mount, mounted
 from somersault.model._plain import model_digest, plain_form
 from somersault.model._pose import pose, spread
 from somersault.model._refused import FREE_IT
+from somersault.model._sagittal import sagittal
 from somersault.model._skeleton import model_shapes
 from somersault.model._to_mjcf import mjcf, write_mjcf
 from somersault.model._vectors import IDENTITY, ZERO, Matrix, Vector, as_matrix, as_vector
@@ -73,6 +74,7 @@ __all__ = [
     "pose_names",
     "reflection",
     "register_format",
+    "sagittal",
     "segment_momenta",
     "shipped",
     "sides",

@@ -36,6 +36,7 @@ RANGES = {
     "hip_flexion": (-30, 160),  # 120 there, and 40 of the lumbar spine, which has no joint here
     "hip_abduction": (-30, 45),
     "knee": (0, 150),  # 135 there by itself, more when it is pulled into a tuck
+    "ankle": (0, 110),  # from the foot in line with the shank; 50 down and 20 up of 90 there
 }
 
 FRONT, LEFT, HEAD = np.eye(3)
@@ -86,9 +87,11 @@ class Physique:
     of the left.
 
     Each part is seen from its inner joint, in axes front, left, head; `lower` from between the
-    hips. The arm's parts are turned so that the elbow bends forward. Lengths in m: `twist` is
-    the height of the torso's joint over the hips, `shoulder` and `hip` are places (3,) in the
-    upper and the lower body, `upper_arm_length` and `thigh_length` reach to the elbow and knee.
+    hips, `foot`, pointed, from the knee. The arm's parts are turned so that the elbow bends
+    forward.
+    Lengths in m: `twist` is the height of the torso's joint over the hips, `shoulder` and `hip` are
+    places (3,) in the upper and the lower body, `upper_arm_length`, `thigh_length` and
+    `shank_length` reach to the elbow, knee and ankle.
     """
 
     lower: Part
@@ -97,22 +100,26 @@ class Physique:
     forearm: Part
     thigh: Part
     shank: Part
+    foot: Part
     twist: float
     shoulder: Array
     hip: Array
     upper_arm_length: float
     thigh_length: float
+    shank_length: float
 
 
-def athlete_model(name: str, physique: Physique, shoulders: str, knees: bool) -> Model:
+def athlete_model(
+    name: str, physique: Physique, shoulders: str, knees: bool, ankles: bool
+) -> Model:
     """The athlete with that physique, in the air.
 
-    Raises SomersaultError if `shoulders` is neither "hinges" nor "ball", or `knees` no truth
-    value.
+    Raises SomersaultError if `shoulders` is neither "hinges" nor "ball", or `knees` or `ankles` no
+    truth value.
     """
     one_of("shoulders", shoulders, ("hinges", "ball"))
     text("name", name)
-    knees = truth("knees", knees)
+    knees, ankles = truth("knees", knees), truth("ankles", ankles)
     bodies = [
         _body("pelvis", GROUND, physique.lower),
         _body(
@@ -126,7 +133,7 @@ def athlete_model(name: str, physique: Physique, shoulders: str, knees: bool) ->
     for side in ("left", "right"):
         bodies += _arm(physique, side, len(bodies), shoulders)
     for side in ("left", "right"):
-        bodies += _leg(physique, side, len(bodies), knees)
+        bodies += _leg(physique, side, len(bodies), knees, ankles)
     return Model(name, True, tuple(bodies))
 
 
@@ -163,25 +170,33 @@ def _arm(physique: Physique, side: str, first: int, shoulders: str) -> list[Body
     ]
 
 
-def _leg(physique: Physique, side: str, first: int, knees: bool) -> list[Body]:
-    """One straight leg, or thigh and shank; `first` is its place among the bodies."""
+def _leg(physique: Physique, side: str, first: int, knees: bool, ankles: bool) -> list[Body]:
+    """A leg in one to three parts; `first` is the place of the uppermost among the bodies."""
     out = 1.0 if side == "left" else -1.0
-    thigh, shank = (
-        part if side == "left" else part.mirrored() for part in (physique.thigh, physique.shank)
+    thigh, shank, foot = (
+        part if side == "left" else part.mirrored()
+        for part in (physique.thigh, physique.shank, physique.foot)
     )
-    knee = -physique.thigh_length * HEAD
+    knee, ankle = -physique.thigh_length * HEAD, -physique.shank_length * HEAD
     hip = np.array([1.0, out, 1.0]) * physique.hip
     joints = (
         _hinge(f"{side}_hip_flexion", -LEFT),
         _hinge(f"{side}_hip_abduction", out * FRONT),
     )
-    if not knees:
-        leg = joined(thigh, shank.moved(knee))
-        return [_body(f"{side}_leg", 0, leg, hip, joints=joints)]
-    return [
-        _body(f"{side}_thigh", 0, thigh, hip, joints=joints),
-        _body(f"{side}_shank", first, shank, knee, joints=(_hinge(f"{side}_knee", LEFT),)),
-    ]
+    if not ankles:
+        shank = joined(shank, foot)
+    if knees:
+        legs = [
+            _body(f"{side}_thigh", 0, thigh, hip, joints=joints),
+            _body(f"{side}_shank", first, shank, knee, joints=(_hinge(f"{side}_knee", LEFT),)),
+        ]
+    else:
+        legs = [_body(f"{side}_leg", 0, joined(thigh, shank.moved(knee)), hip, joints=joints)]
+    if ankles:
+        where = ankle if knees else knee + ankle
+        below, hinge = first + len(legs) - 1, _hinge(f"{side}_ankle", -LEFT)
+        legs.append(_body(f"{side}_foot", below, foot.moved(-ankle), where, joints=(hinge,)))
+    return legs
 
 
 def _hinge(name: str, axis: Array) -> Joint:

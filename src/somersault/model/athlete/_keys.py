@@ -22,7 +22,7 @@ class AthleteKeys:
         As in `athlete`: m, kg.
     measurements, densities
         The file, and the densities, as in `athlete_from_measurements`; a `mass` goes with them too.
-    shoulders, knees, name
+    shoulders, knees, ankles, name
         As in both.
     """
 
@@ -33,6 +33,7 @@ class AthleteKeys:
     densities: str | None = None
     shoulders: str | None = None
     knees: bool = False
+    ankles: bool = False
     name: str | None = None
 
     def model(self) -> Model:

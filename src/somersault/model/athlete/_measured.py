@@ -36,6 +36,7 @@ def athlete_from_measurements(
     densities: Densities = "Dempster",
     shoulders: Shoulders = "hinges",
     knees: bool = False,
+    ankles: bool = False,
     name: str = "athlete",
 ) -> Model:
     """A gymnast of the shape that 95 measurements give, with thirteen joints.
@@ -53,7 +54,7 @@ def athlete_from_measurements(
         from `densities`.
     densities : {"Dempster", "Chandler", "Clauser"}
         kg/m³ by segment.
-    shoulders, knees, name
+    shoulders, knees, ankles, name
         As in `athlete`.
 
     Returns
@@ -86,7 +87,7 @@ def athlete_from_measurements(
     human = _weighed(human_type, metres, densities)
     wanted = measured if mass is None else mass
     scale = 1.0 if wanted is None else _mass(wanted) / human.mass
-    return athlete_model(name, _physique(human, scale), shoulders, knees)
+    return athlete_model(name, _physique(human, scale), shoulders, knees, ankles)
 
 
 def _mass(value: Any) -> float:
@@ -140,19 +141,35 @@ def _physique(human: Any, scale: float) -> Physique:
             _AXES
         )
 
+    def piece(segment: Any, solids: slice) -> Part:
+        """Some solids of a leg's segment."""
+        ends = -np.cumsum([one.height for one in segment.solids])  # under its inner joint
+        parts = [
+            Part(
+                scale * one.mass,
+                one.rel_center_of_mass[:, 0] + [0.0, 0.0, end],
+                scale * one.rel_inertia,
+            )
+            for one, end in list(zip(segment.solids, ends, strict=True))[solids]
+        ]
+        return joined(*parts).turned(_AXES)
+
     pelvis, thorax, chest = human.P, human.T, human.C
+    leg, foot = (shape.placed(np.zeros(3), _AXES) for shape in _solids(human.J2, _TO_THE_ANKLE))
     return Physique(
         lower=joined(part(pelvis, 2), part(thorax, 1).moved(place(thorax))),
         upper=part(chest, _TO_THE_NECK),
         upper_arm=part(human.A1, 0),
         forearm=part(human.A2, 0),
         thigh=part(human.J1, 3),
-        shank=part(human.J2, _TO_THE_ANKLE),
+        shank=piece(human.J2, slice(_TO_THE_ANKLE)).looking(leg),
+        foot=piece(human.J2, slice(_TO_THE_ANKLE, None)).looking(foot),
         twist=float(place(chest)[2]),
         shoulder=place(human.A1) - place(chest),
         hip=place(human.J1),
         upper_arm_length=human.A1.length,
         thigh_length=human.J1.length,
+        shank_length=float(sum(one.height for one in human.J2.solids[:_TO_THE_ANKLE])),
     )
 
 

@@ -40,6 +40,7 @@ def athlete(
     *,
     shoulders: Shoulders = "hinges",
     knees: bool = False,
+    ankles: bool = False,
     name: str = "athlete",
 ) -> Model:
     """A gymnast of a height and mass, with thirteen joints.
@@ -59,6 +60,8 @@ def athlete(
         Three hinges each, or a ball.
     knees : bool
         Whether each leg has a hinge there; else it is straight.
+    ankles : bool
+        Whether each foot has a hinge; else it is pointed. At 0 it is in line with the shank.
     name : str
         The model's.
 
@@ -80,7 +83,7 @@ def athlete(
     one_of("sex", sex, TABLES)
     tall = _within("height", height, "m", 0.5, 2.5)
     heavy = _within("mass", mass, "kg", 10.0, 250.0)
-    return athlete_model(name, _physique(TABLES[sex], tall, heavy), shoulders, knees)
+    return athlete_model(name, _physique(TABLES[sex], tall, heavy), shoulders, knees, ankles)
 
 
 def _within(what: str, value: float, unit: str, least: float, most: float) -> float:
@@ -158,7 +161,8 @@ def _physique(table: Table, height: float, mass: float) -> Physique:
         upper_arm=hung("upper_arm"),
         forearm=joined(hung("forearm"), hung("hand", -length("forearm"))),
         thigh=hung("thigh"),
-        shank=joined(hung("shank"), hung("foot", ankle - length("shank")).looking(bare)),
+        shank=hung("shank"),
+        foot=hung("foot", ankle - length("shank")).looking(bare),
         twist=lower + middle,
         shoulder=np.array(
             [
@@ -170,4 +174,5 @@ def _physique(table: Table, height: float, mass: float) -> Physique:
         hip=np.array([0.0, breadth * HIP_HALF_WIDTH, 0.0]),
         upper_arm_length=length("upper_arm"),
         thigh_length=length("thigh"),
+        shank_length=length("shank"),
     )
