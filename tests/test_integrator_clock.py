@@ -27,7 +27,7 @@ def clocked() -> Integrator:
 def by_hand(gain: float, knots: np.ndarray, slopes: np.ndarray, end: float) -> float:
     """x at the end, from tick to tick and knot to knot."""
     x, shown, rate, piece = 0.0, 0.0, 1.0, 0
-    for k in range(round(end / EVERY)):
+    for _ in range(round(end / EVERY)):
         bend = (np.clip(1 + gain * x, 0.5, 2.0) - rate) / EVERY
         begun, left = 0.0, EVERY
         while piece < len(knots):

@@ -31,7 +31,7 @@ class ByLaw(Law, JointTakeoff):
             raise SomersaultError(f"{where} is a {joint.kind}, which takes no law; give it hinges")
         plan = super().settled(joint)
         assert isinstance(plan, ByLaw)
-        return plan.checked_law(where)
+        return replace(plan, **plan.checked_times(where))
 
     def mirrored(self, model: Model, name: str, factor: float, offset: float) -> Any:
         plan = super().mirrored(model, name, factor, offset)

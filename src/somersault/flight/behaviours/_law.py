@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from typing import Any, TypeVar
+from dataclasses import dataclass, field
+from typing import Any
 
 import casadi as ca
 
@@ -13,8 +13,6 @@ from somersault._core.numbers import number
 from somersault.flight.behaviours import _declared
 from somersault.flight.behaviours._sensing import Senses
 from somersault.laws import Formula
-
-Self = TypeVar("Self", bound="Law")
 
 _MOST_TICKS_OF_DELAY = 1_000
 _NEARLY = 1e-9  # of a tick
@@ -40,8 +38,8 @@ class Law:
     every: float = field(default=0.02, kw_only=True, metadata={"structure": True})
     delay: float = field(default=0.0, kw_only=True, metadata={"structure": True})
 
-    def checked_law(self: Self, where: str) -> Self:
-        """The same with its times as floats.
+    def checked_times(self, where: str) -> dict[str, Any]:
+        """Its times as floats, by their names, after a look at the whole of it.
 
         Parameters
         ----------
@@ -50,7 +48,7 @@ class Law:
 
         Returns
         -------
-        Law
+        dict of str to float
 
         Raises
         ------
@@ -72,7 +70,7 @@ class Law:
                 f"{where} senses {silent[0]} with noise, but its law {self.law!r} does not have "
                 "it; leave it out"
             )
-        return replace(self, every=every, delay=delay)
+        return {"every": every, "delay": delay}
 
     @property
     def tables(self) -> tuple[str, ...]:
