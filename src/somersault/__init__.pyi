@@ -79,6 +79,9 @@ from .flight import (
     Release as Release,
 )
 from .flight import (
+    Replay as Replay,
+)
+from .flight import (
     Report as Report,
 )
 from .flight import (

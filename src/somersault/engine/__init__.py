@@ -1,5 +1,6 @@
 """Compiled functions over many samples, and integrations of many states: it knows no bodies."""
 
+from somersault.engine._clock import CLOCK, clock_at
 from somersault.engine._closed_loop import ClosedLoop, System
 from somersault.engine._integrator import MOST_STEPS, STATUS, Integrator, Pieces, Solution
 from somersault.engine._kernel import Kernel
@@ -8,6 +9,7 @@ from somersault.engine._threads import Stop, cores, pool, threads, use_threads
 from somersault.engine._vectors import LANES
 
 __all__ = [
+    "CLOCK",
     "LANES",
     "MOST_STEPS",
     "STATUS",
@@ -18,6 +20,7 @@ __all__ = [
     "Solution",
     "Stop",
     "System",
+    "clock_at",
     "compiled",
     "compiled_function",
     "cores",

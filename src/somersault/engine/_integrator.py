@@ -71,7 +71,8 @@ class Solution:
 @dataclass(frozen=True)
 class Pieces:
     """Parameters that change on the way: row p of `parameters` (N or 1, P, c) until `ends`
-    (N or 1, P), s, which do not fall; a flight is over with its last piece."""
+    (N or 1, P), s, which do not fall; a flight is over with its last piece. Where flights have a
+    clock the ends of all but the last are what it shows."""
 
     ends: Array
     parameters: Array
@@ -95,6 +96,9 @@ class Integrator:
     tick
         Of the vector of `slope`, what the last numbers of the state become at each tick; they have
         no slope, and stay as they are from tick to tick.
+    clock
+        Where in the state the numbers of the clock begin (`CLOCK`), which are carried, if pieces
+        end by one.
 
     Examples
     --------
@@ -115,13 +119,14 @@ class Integrator:
         longest: ca.Function | None = None,
         changing: int = 0,
         tick: ca.Function | None = None,
+        clock: int | None = None,
     ) -> None:
         carried = 0 if tick is None else tick.nnz_out(0)
         self.state: int = slope.nnz_out(0) + carried
         self.inputs: int = slope.nnz_in(0)
         self.changing = changing
         self._slope, self._gauge, self._watch, self._longest = slope, gauge, watch, longest
-        self._tick = tick
+        self._tick, self._clock = tick, clock
         watched = 0 if watch is None else watch.nnz_out(0)
         self._rows = Rows(self.state, self.inputs - self.state - 1, watched, carried)
         self.outputs: int = self._rows.outputs
@@ -139,7 +144,7 @@ class Integrator:
         event = self._gauge is not None
         texts += [step(self._rows, event), renew(self._rows, event)]
         texts += [carry(self._rows)] if self._rows.carried else []
-        engine = compiled(_lanes.fly(self._rows, self.changing), module(texts))
+        engine = compiled(_lanes.fly(self._rows, self.changing, self._clock), module(texts))
         return compiled_function(engine, "fly", ctypes.c_void_p)
 
     def solve(
@@ -194,7 +199,9 @@ class Integrator:
         if pieces is None:
             until = samples[:, -1] if end is None else end
             pieces = Pieces(np.reshape(until, (-1, 1)), np.empty((1, 1, 0)))
-        ends = np.ascontiguousarray(np.minimum(pieces.ends, samples[:, -1:]))
+        ends = np.minimum(pieces.ends, samples[:, -1:], dtype=float)
+        if self._clock is not None:
+            ends[:, :-1] = pieces.ends[:, :-1]
         table = np.ascontiguousarray(pieces.parameters, float)
         still = np.ascontiguousarray(parameters, float)
         first = np.ascontiguousarray(start, float)

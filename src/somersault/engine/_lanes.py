@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from somersault.engine import _step as one
+from somersault.engine._clock import CLOCK, time_of
 from somersault.engine._flow import (
     DOUBLE,
     INTEGER,
@@ -33,7 +34,8 @@ class Job(ctypes.Structure):
 
     `first` (count, outputs) has states and watched rows at time 0. In its piece p the parameters
     of flight i that change are `table` [i table_by + p changing …], until `ends` [i ends_by + p];
-    those that stay are `still` [i still_by …]. `out` (count, sample_count, outputs) receives what
+    those that stay are `still` [i still_by …]. Where flights have a clock the ends are what it
+    shows, but for the last one. `out` (count, sample_count, outputs) receives what
     there is at each of `samples` [i samples_by …], or was at the end of a flight that ended before;
     `last` (count, outputs + 3) what there is at the end, when that was, the status and the steps.
     Every `tick`, from time 0 on, what flights carry is given anew.
@@ -75,12 +77,15 @@ _FLIGHT, _PIECE, _SAMPLE, _NEXT_TICK = range(4)
 
 class _Lane:
     """Writes what is done for one lane, at the end of `flow`; `places` are its job, block, trial,
-    control and integers, and its number; `copy` is `copier`'s."""
+    control and integers, and its number. `copy` is `copier`'s and `root` the square root, `clock`
+    the first row of the clock's if there is one."""
 
     def __init__(
-        self, flow: Flow, rows: Rows, changing: int, places: Sequence[Any], copy: Any
-    ) -> None:
-        self._flow, self._rows, self._changing, self._copy = flow, rows, changing, copy
+        self, flow: Flow, rows: Rows, changing: int, clock: int | None, places: Sequence[Any],
+        copy: Any, root: Any,
+    ) -> None:  # fmt: skip
+        self._flow, self._rows, self._changing, self._clock = flow, rows, changing, clock
+        self._copy, self._root = copy, root
         self._at_job, self._x, self._z, self._c, self._integers, self._lane = places
 
     def _job(self, name: str) -> Any:
@@ -137,21 +142,38 @@ class _Lane:
             flow.leave_if(flow.fcmp_unordered("<", time, due), shown)
             self._show(flight, sample)
             flow.store(flow.add(sample, integer(1)), self._which(_SAMPLE))
-        next_sample = flow.read(until)
+        last = flow.sub(pieces, integer(1))
+        over = flow.read(self._entry("ends", flight, last))
+        self._not_beyond(until, over)
+        due = flow.read(until)
         with flow.repeated() as settled:
+            flow.store(due, until)
             piece = flow.read(self._which(_PIECE), INTEGER)
-            end = flow.read(self._entry("ends", flight, piece))
-            sooner = flow.fcmp_ordered("<", next_sample, end)
-            flow.store(flow.select(sooner, next_sample, end), until)
+            flow.leave_if(flow.icmp_signed(">=", piece, last), settled)
+            end = self._time_of(flow.read(self._entry("ends", flight, piece)))
+            self._not_beyond(until, end)
             flow.leave_if(flow.fcmp_unordered("<", time, end), settled)
             following = flow.add(piece, integer(1))
             flow.store(following, self._which(_PIECE))
-            flow.leave_if(flow.icmp_signed(">=", following, pieces), settled)
             self._begin_piece(flight, following)
             flow.store(integer(_SLOPE), left)
         if self._rows.carried:
             self._tick(time, left)
-        return flow.icmp_signed("<", flow.read(self._which(_PIECE), INTEGER), pieces)
+        return flow.fcmp_ordered("<", time, over)
+
+    def _time_of(self, end: Any) -> Any:
+        """When a piece ends that is not the last."""
+        if self._clock is None:
+            return end
+        rows = range(self._clock, self._clock + CLOCK)
+        clock = [self._flow.read(self._place(self._x, row)) for row in rows]
+        return time_of(self._flow, self._root, clock, end)
+
+    def _not_beyond(self, until: Any, time: Any) -> None:
+        """See that the next step does not go beyond a time, unless that is none."""
+        flow, other = self._flow, self._flow.read(until)
+        sooner = flow.fcmp_ordered("<", time, other)
+        flow.store(flow.select(sooner, time, other), until)
 
     def _tick(self, time: Any, left: Any) -> None:
         """See to a tick that was reached, and that the next one is not missed."""
@@ -164,8 +186,7 @@ class _Lane:
             flow.leave_if(flow.fcmp_unordered("<", time, due()), ahead)
             flow.store(flow.add(flow.read(which, INTEGER), integer(1)), which)
             flow.store(integer(_TICK), left)
-        tick, other = due(), flow.read(until)
-        flow.store(flow.select(flow.fcmp_ordered("<", tick, other), tick, other), until)
+        self._not_beyond(until, due())
 
     def _finish(self) -> None:
         """Hand back how a flight ended, also as all samples that it did not reach."""
@@ -233,18 +254,19 @@ class _Lane:
         self._flow.call(self._copy, [to, side, source, lane, integer(count)])
 
 
-def fly(rows: Rows, changing: int) -> str:
+def fly(rows: Rows, changing: int, clock: int | None = None) -> str:
     """LLVM text of `void fly(Job *)`: the flights of the queue, eight at a time, until there are
     none. It calls @step, @renew and, where something is carried, @carry.
 
-    The first `changing` parameters are those that change from piece to piece.
+    The first `changing` parameters are those that change from piece to piece. `clock` is the first
+    row of the clock that says when.
     """
     code = Code()
     memory = [POINTER] * len(one.MEMORY)
     step = code.declared("step", memory, LANE_BITS)
     renew = code.declared("renew", [*memory, LANE_BITS])
     carry = code.declared("carry", [*memory, LANE_BITS]) if rows.carried else None
-    serve = _serve(code, rows, changing)
+    serve = _serve(code, rows, changing, clock)
     flow, (job,) = code.written("fly", [POINTER])
     blocks = _memory(flow, rows, job)
     x, z, c = (blocks[name] for name in (one.BLOCK, one.TRIAL, one.CONTROL))
@@ -256,23 +278,26 @@ def fly(rows: Rows, changing: int) -> str:
     flow.store(LANE_BITS(-1), stopped)
     with flow.repeated() as over:
         flow.store(LANE_BITS(0), fresh)
-        flow.store(LANE_BITS(0), ticked)
-        with flow.counted(integer(0), integer(LANES)) as lane:
-            place = flow.shl(LANE_BITS(1), flow.trunc(lane, LANE_BITS))
-            stands = flow.and_(flow.read(stopped, LANE_BITS), place)
-            with flow.if_then(flow.icmp_unsigned("!=", stands, LANE_BITS(0))):
-                left = flow.call(serve, [job, x, z, c, integers, lane])
-                for code_left, lanes in ((_SLOPE, (fresh,)), (_TICK, (fresh, ticked))):
-                    with flow.if_then(flow.icmp_signed("==", left, integer(code_left))):
-                        for which in lanes:
-                            flow.store(flow.or_(flow.read(which, LANE_BITS), place), which)
-                with flow.if_then(flow.icmp_signed("==", left, integer(_LEAVE))):
-                    flow.store(flow.sub(flow.read(active, INTEGER), integer(1)), active)
-        flow.leave_if(flow.icmp_signed("==", flow.read(active, INTEGER), integer(0)), over)
-        if carry is not None:
+        with flow.repeated() as served:
+            flow.store(LANE_BITS(0), ticked)
+            with flow.counted(integer(0), integer(LANES)) as lane:
+                place = flow.shl(LANE_BITS(1), flow.trunc(lane, LANE_BITS))
+                stands = flow.and_(flow.read(stopped, LANE_BITS), place)
+                with flow.if_then(flow.icmp_unsigned("!=", stands, LANE_BITS(0))):
+                    left = flow.call(serve, [job, x, z, c, integers, lane])
+                    for code_left, lanes in ((_SLOPE, (fresh,)), (_TICK, (fresh, ticked))):
+                        with flow.if_then(flow.icmp_signed("==", left, integer(code_left))):
+                            for which in lanes:
+                                flow.store(flow.or_(flow.read(which, LANE_BITS), place), which)
+                    with flow.if_then(flow.icmp_signed("==", left, integer(_LEAVE))):
+                        flow.store(flow.sub(flow.read(active, INTEGER), integer(1)), active)
             bits = flow.read(ticked, LANE_BITS)
-            with flow.if_then(flow.icmp_unsigned("!=", bits, LANE_BITS(0))):
+            flow.leave_if(flow.icmp_unsigned("==", bits, LANE_BITS(0)), served)
+            if carry is not None:
                 flow.call(carry, [*blocks.values(), bits])
+            # What is carried may say when a piece ends, so these lanes are served again.
+            flow.store(bits, stopped)
+        flow.leave_if(flow.icmp_signed("==", flow.read(active, INTEGER), integer(0)), over)
         bits = flow.read(fresh, LANE_BITS)
         with flow.if_then(flow.icmp_unsigned("!=", bits, LANE_BITS(0))):
             flow.call(renew, [*blocks.values(), bits])
@@ -286,12 +311,12 @@ def fly(rows: Rows, changing: int) -> str:
     return str(code)
 
 
-def _serve(code: Code, rows: Rows, changing: int) -> Any:
+def _serve(code: Code, rows: Rows, changing: int, clock: int | None) -> Any:
     """serve(job, x, z, c, integers, lane): `_Lane.serve`, as a function."""
-    copy = copier(code)
+    copy, root = copier(code), code.declared("llvm.sqrt.f64", [DOUBLE], DOUBLE)
     flow, arguments = code.written("serve", [*[POINTER] * 5, INTEGER], INTEGER)
     left = flow.room(INTEGER)
-    _Lane(flow, rows, changing, arguments, copy).serve(left)
+    _Lane(flow, rows, changing, clock, arguments, copy, root).serve(left)
     flow.ret(flow.read(left, INTEGER))
     return flow.function
 

@@ -4,8 +4,9 @@ from somersault.flight._ballistic import BallisticPath
 from somersault.flight._broken import BROKEN, why_broken
 from somersault.flight._compliance import compliant, off_nominal, with_momentum
 from somersault.flight._deviation import deviated_flight
-from somersault.flight._flight import Flight, Landing
+from somersault.flight._flight import Flight
 from somersault.flight._fly import fly
+from somersault.flight._landing import Landing
 from somersault.flight._maneuver import Maneuver
 from somersault.flight._maneuvers import (
     arm_tilt,
@@ -23,6 +24,7 @@ from somersault.flight._principal import (
 )
 from somersault.flight._prop import Prop
 from somersault.flight._release import Release, released
+from somersault.flight._replay import Replay
 from somersault.flight._report import ENDINGS, Report, landing_error, landing_target
 from somersault.flight._spec import KEYS
 from somersault.flight._strange import BROKE_OFF
@@ -46,6 +48,7 @@ __all__ = [
     "Maneuver",
     "Prop",
     "Release",
+    "Replay",
     "Report",
     "Swing",
     "Takeoff",

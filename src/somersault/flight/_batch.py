@@ -12,19 +12,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.errors import SomersaultError
 from somersault.dynamics import parameter_values
 from somersault.engine import MOST_STEPS, Solution
 from somersault.flight._course import Course
 from somersault.flight._plane import check_in_plane
 from somersault.flight._plans import numbers, plans, sound
+from somersault.flight._replay import ERRORS
 from somersault.flight._start import Start, Starts, in_si, start, starts
 from somersault.flight._system import System, system
 from somersault.flight._takeoff import Takeoff
-from somersault.flight._tape import Tape, recorded, recorded_each
+from somersault.flight._tape import Kept, Sensed, Tape, Torques, recorded, recorded_each
 from somersault.flight.behaviours import JointPlan, kinds
 from somersault.laws import seeds
 from somersault.model import Model
@@ -76,8 +79,11 @@ class Batch:
     @cached_property
     def system(self) -> System:
         """The equations, shared with every batch that has the same."""
-        taped = self.takeoff.tape is not None
-        return system(self.model, kinds(self.joints), self.until, self.bodies, self.extremes, taped)
+        taped, replay = self.takeoff.tape is not None, self.takeoff.replay
+        return system(
+            self.model, kinds(self.joints), self.until, self.bodies, self.extremes, taped,
+            None if replay is None else replay.kind(),
+        )  # fmt: skip
 
     @cached_property
     def values(self) -> Mapping[Name, float | Array]:
@@ -93,13 +99,42 @@ class Batch:
         """The flights whose joint torques the motor tape records."""
         assert self.takeoff.tape is not None
         tape = tuple(float(x) for x in self.takeoff.tape)
-        joints = in_si(self.joints, self.begun().starts.values)
-        return _nominal(self.model, joints, tape, self.duration)
+        return _nominal(self.model, self._in_si, tape, self.duration)
 
     @cached_property
-    def recording(self) -> Tape:
-        """The torques of this batch's one flight, as its takeoff gives it."""
-        return recorded(self)
+    def perceived(self) -> Batch:
+        """The flights against whose angles a replay's law measures errors; their turns are
+        watched."""
+        takeoff, replay = self.takeoff, self.takeoff.replay
+        assert replay is not None
+        for plan in self.joints:
+            if plan.does.sensing is not None:
+                raise SomersaultError(
+                    f"joint {plan.joint.name} has a law too, so there is no nominal flight in "
+                    "which only paths are followed; let the replay's law do without errors"
+                )
+        start, momentum = replay.nominal_angles, replay.nominal_momentum
+        if start is None or momentum is None:
+            angles = (takeoff.somersault, takeoff.tilt, takeoff.twist)
+            start = angles if takeoff.quaternion is None else takeoff.quaternion
+            momentum = takeoff.angular_momentum
+            momentum = self.begun().start.momentum.tolist() if momentum is None else momentum
+        attitude, h = (tuple(float(x) for x in row) for row in (start, momentum))
+        return _nominal(self.model, self._in_si, h, self.duration, attitude, ())
+
+    @property
+    def _in_si(self) -> tuple[JointPlan, ...]:
+        return in_si(self.joints, self.begun().starts.values)
+
+    def recording(self, kept: Kept) -> Tape:
+        """What is recorded of this batch's one flight, as its takeoff gives it."""
+        if kept not in self._recordings:
+            self._recordings[kept] = recorded(self, kept)
+        return self._recordings[kept]
+
+    @cached_property
+    def _recordings(self) -> dict[Kept, Tape]:
+        return {}
 
     def sound(self, values: Numbers, count: int) -> Array:
         """Whether each flight is one that could be asked for by itself.
@@ -115,7 +150,8 @@ class Batch:
         -------
         ndarray of bool, (count,)
         """
-        return sound(self.joints, values, count)
+        good, replay = sound(self.joints, values, count), self.takeoff.replay
+        return good if replay is None else good & replay.sound(values, count)
 
     def begun(self, values: Numbers | None = None, count: int = 1) -> Begun:
         """The flights at takeoff.
@@ -154,33 +190,52 @@ class Begun:
         """Paths, motor tapes and lasting parameters."""
         batch, starts = self.batch, self.starts
         tape = None if batch.takeoff.tape is None else self._tape
-        return Course(batch.system, batch.joints, starts, batch.duration, tape)
+        return Course(batch.system, batch.joints, starts, batch.duration, tape, self._perceived)
 
     @property
     def _tape(self) -> Path:
         """The motor tape of each flight, or one for all where they are alike."""
-        nominal, values = self.batch.nominal, self.starts.values
-        tape = nominal.recording
-        moved = {n: x for n, x in values.items() if n in nominal.values and n[0] in _OF_JOINTS}
-        if any(isinstance(x, np.ndarray) for x in moved.values()):
-            tape = recorded_each(nominal, moved, len(self.starts.q), tape)
+        tape = self._recorded(self.batch.nominal, Torques())
         played = [slot.joint.name for slot in self.batch.system.layout.slots if slot.tape]
         return tape.path([self.batch.model.speed_slice(name).start for name in played])
+
+    @property
+    def _perceived(self) -> Path | None:
+        """What a replay's law compares with of the nominal flight, if it does."""
+        replay = self.batch.takeoff.replay
+        if replay is None or not replay.errors:
+            return None
+        kept = Sensed(tuple(ERRORS[name] for name in replay.errors))
+        return self._recorded(self.batch.perceived, kept).path(list(range(len(kept.names))))
+
+    def _recorded(self, nominal: Batch, kept: Kept) -> Tape:
+        tape, values = nominal.recording(kept), self.starts.values
+        moved = {n: x for n, x in values.items() if n in nominal.values and n[0] in _OF_JOINTS}
+        if any(isinstance(x, np.ndarray) for x in moved.values()):
+            return recorded_each(nominal, kept, moved, len(self.starts.q), tape)
+        return tape
 
     @cached_property
     def rows(self) -> Array:
         """States at takeoff, with room behind them for what is watched, (N, state + watched)."""
         s = self.starts
-        return self.batch.system.start(s.quaternion, s.omega, s.q, s.u, self._sensed)
+        rows = self.batch.system.start(s.quaternion, s.omega, s.q, s.u, self._sensed)
+        if self.batch.extremes is not None:
+            first = self.batch.system.layout.state
+            rows[:, first : first + s.angles.shape[1]] = s.angles
+        return rows
 
     @property
     def _sensed(self) -> Array:
-        """What is carried of the body before the first tick: its angles, and the noise's state."""
-        angles, layout = self.starts.angles, self.batch.system.layout
-        if not layout.noise:
-            return angles
-        which = np.broadcast_to(self.starts.values["takeoff", "noise"], len(angles))
-        return np.concatenate([angles, seeds(which)], 1)
+        """What is carried of the body before the first tick: its angles, the noise's state, and
+        the replay."""
+        angles, values, replay = self.starts.angles, self.starts.values, self.batch.takeoff.replay
+        parts = [angles]
+        if self.batch.system.layout.noise:
+            parts.append(seeds(np.broadcast_to(values["takeoff", "noise"], len(angles))))
+        if replay is not None:
+            parts.append(replay.at_takeoff(values, len(angles)))
+        return np.concatenate(parts, 1)
 
     def solve(self, samples: Array, accuracy: float, most_steps: int = MOST_STEPS) -> Solution:
         """Integrate the flights.
@@ -205,8 +260,14 @@ class Begun:
 
 @lru_cache(maxsize=64)
 def _nominal(
-    model: Model, joints: tuple[JointPlan, ...], tape: tuple[float, ...], duration: float
-) -> Batch:
-    """The batch of a nominal flight, with the recording that it keeps."""
+    model: Model, joints: tuple[JointPlan, ...], momentum: tuple[float, ...], duration: float,
+    attitude: tuple[float, ...] = (0.0, 0.0, 0.0), extremes: tuple[str, ...] | None = None,
+) -> Batch:  # fmt: skip
+    """The batch of a nominal flight, with the recordings that it keeps; its attitude is given by
+    angles, or as a quaternion."""
     does = {plan.joint.name: plan.does.nominal() for plan in joints}
-    return Batch(model, Takeoff(angular_momentum=tape, joints=does), duration)
+    start: dict[str, Any] = {"quaternion": attitude}
+    if len(attitude) == 3:
+        start = dict(zip(("somersault", "tilt", "twist"), attitude, strict=True))
+    takeoff = Takeoff(angular_momentum=momentum, joints=does, **start)
+    return Batch(model, takeoff, duration, extremes=extremes)

@@ -20,6 +20,7 @@ from somersault._core.numbers import number
 from somersault.attitude import matrix_from_quaternion
 from somersault.dynamics import Equations
 from somersault.flight._batch import Batch
+from somersault.flight._replay import pinned
 from somersault.flight._start import Start
 from somersault.flight._takeoff import Takeoff, require_takeoff
 from somersault.flight.behaviours import (
@@ -163,8 +164,8 @@ def off_nominal(
 ) -> Takeoff:
     """The same takeoff from an attitude that is off by some angles: an off-nominal start.
 
-    The angular momentum stays where it is in space, and a motor tape is that of the nominal flight
-    (Playter 1994, section 6.3.2).
+    The angular momentum stays where it is in space. A motor tape is that of the nominal flight, and
+    so is what a replay law's errors are measured against (Playter 1994, section 6.3.2).
 
     Parameters
     ----------
@@ -194,7 +195,9 @@ def off_nominal(
         raise SomersaultError("a takeoff that is off by angles needs angles, not a quaternion")
     given = {"somersault": somersault, "tilt": tilt, "twist": twist}
     off = {name: getattr(begun, name) + number(name, by) for name, by in given.items()}
-    return replace(begun, **off)
+    nominal = [getattr(begun, name) for name in given]
+    assert begun.angular_momentum is not None
+    return replace(begun, replay=pinned(begun.replay, nominal, begun.angular_momentum), **off)
 
 
 def _begun(model: Model, takeoff: Takeoff) -> Start:

@@ -14,6 +14,7 @@ from somersault._core.datasets import save_history
 from somersault.attitude import matrix_from_quaternion, unwrapped_angles
 from somersault.flight._ballistic import BallisticPath
 from somersault.flight._course import Course
+from somersault.flight._landing import Landing
 from somersault.flight._plane import kept
 from somersault.flight._start import Start
 from somersault.flight._system import System
@@ -24,36 +25,6 @@ from somersault.view import Filmed
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
-
-
-@dataclass(frozen=True)
-class Landing:
-    """The end of a flight: when it was, how the body stood and moved, and why it ended.
-
-    Attributes
-    ----------
-    time : float
-        s.
-    somersault, tilt, twist : float
-        rad, with all whole turns since takeoff.
-    quaternion : ndarray, (4,)
-        Scalar first, body to inertial.
-    angular_velocity : ndarray, (3,)
-        In body axes, rad/s.
-    joints : dict of str to float
-        Joint coordinates by name, rad or m.
-    ended : str
-        "duration", "event", "too many steps" or "not finite".
-    """
-
-    time: float
-    somersault: float
-    tilt: float
-    twist: float
-    quaternion: Array
-    angular_velocity: Array
-    joints: dict[str, float]
-    ended: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,7 +139,19 @@ class Flight(Filmed):
 
     @property
     def _parameters(self) -> Array:
-        return self._course.parameters(self.times[None])[0]
+        return self._course.parameters(self.times[None], self._states[None, self._keep])[0]
+
+    @property
+    def phase(self) -> Array:
+        """The time of paths and motor tape at the sample times, (time,), s: another one than that
+        of the clock where the takeoff has a replay."""
+        return self._course.phase(self.times, self._states[self._keep])[0]
+
+    @property
+    def phase_rate(self) -> Array:
+        """How fast paths and motor tape are played at the sample times, (time,), 1 being as they
+        are."""
+        return self._course.phase(self.times, self._states[self._keep])[1]
 
     @property
     def angular_velocity(self) -> Array:
@@ -282,7 +265,7 @@ class Flight(Filmed):
         """How it ended."""
         somersault, tilt, twist = self._angles[-1].tolist()
         state, time = self._states[-1], self._moments[-1]
-        last = self._course.parameters(self._moments[None, -1:])[0]
+        last = self._course.parameters(self._moments[None, -1:], self._states[None, -1:])[0]
         omega, q, _ = self.system.read(self._states[-1:], self._moments[-1:], last)
         return Landing(
             float(time), somersault, tilt, twist,
@@ -301,7 +284,12 @@ class Flight(Filmed):
         angles = self.angles
         q, u = self._joints
         rad = {"units": "rad"}
+        replayed = {
+            "phase": ("time", self.phase, {"units": "s"}),
+            "phase_rate": ("time", self.phase_rate, {"units": "1"}),
+        }
         return {
+            **(replayed if self.system.symbols.replay is not None else {}),
             "somersault": ("time", angles[:, 0], rad),
             "tilt": ("time", angles[:, 1], rad),
             "twist": ("time", angles[:, 2], rad),

@@ -3,9 +3,10 @@
 The state is (quaternion, ω, coordinates and speeds of the joints that are part of it). Where none
 is only the attitude is unknown: then the state is the quaternion alone, and ω is what the angular
 momentum, three parameters more, leaves it. Where joints have laws the state ends with what is
-carried from tick to tick: the angles as they were last sensed, the state of the noise, and each
-joint's own. Parameters are first those that change on
-the way (paths, the motor tape), then those that stay (bodies, joints, momentum).
+carried from tick to tick: the angles as they were last sensed, the state of the noise, the phase
+and what waits of the replay, and each joint's own. Parameters are first those that change on the
+way (paths, the motor tape, what is sensed of the nominal flight), then those that stay (bodies, the
+replay, joints, momentum).
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from somersault._core.errors import SomersaultError
+from somersault.flight._replay import Replay
 from somersault.flight.behaviours import JointTakeoff
 from somersault.laws import STATE as NOISE
 from somersault.model import Joint, Model
@@ -21,7 +23,7 @@ from somersault.motion import DEGREE, TAPE_DEGREE
 ATTITUDE, RATE = 4, 3  # of a state: quaternion and ω
 ANGLES = 3  # of what is carried: somersault, tilt and twist
 PATH = 1 + DEGREE + 1  # parameters of a path: since when, and its polynomial
-TAPED = TAPE_DEGREE + 1  # of each joint on the tape: its torque's polynomial
+TAPED = TAPE_DEGREE + 1  # of each joint on the tape, and of what is sensed: a polynomial
 
 
 @dataclass(frozen=True)
@@ -42,16 +44,22 @@ class Slot:
 @dataclass(frozen=True)
 class Layout:
     """The places of all of them; `tape` is where the motor tape's time of origin stands, `sensed`
-    and `noise` what is carried of the body, `every` the time between ticks (s) if there are any."""
+    and `noise` what is carried of the body, `every` the time between ticks (s) if there are any.
+    `replay` is what is carried of the replay and `replay_numbers` its parameters; `nominal` is
+    where the polynomials of what is sensed of the nominal flight stand, behind their time of
+    origin."""
 
     slots: tuple[Slot, ...]
     bound: bool
     state: int
     sensed: range
     noise: range
+    replay: range
     every: float | None
     changing: int
+    nominal: range
     bodies: range
+    replay_numbers: range
     momentum: range
     parameters: int
     tape: int | None
@@ -63,12 +71,13 @@ class Layout:
 
 
 def layout(
-    model: Model, kinds: tuple[JointTakeoff, ...], bodies: tuple[str, ...], tape: bool
-) -> Layout:
+    model: Model, kinds: tuple[JointTakeoff, ...], bodies: tuple[str, ...], tape: bool,
+    replay: Replay | None,
+) -> Layout:  # fmt: skip
     """The layout of a model's flight whose joints are of these kinds.
 
     `bodies` names the numbers of bodies that are parameters; with `tape` the torques of the nominal
-    motion act at the joints whose `nominal` behaviour is another.
+    motion act at the joints whose `nominal` behaviour is another. `replay` is of a kind.
     """
     pairs = list(zip(model.joints, kinds, strict=True))
     moving = [joint for joint, kind in pairs if kind.in_state]
@@ -76,16 +85,23 @@ def layout(
     q = ATTITUDE if bound else ATTITUDE + RATE
     u = q + sum(joint.coordinates for joint in moving)
     moved = u + sum(joint.speeds for joint in moving)
-    every = _every(pairs)
+    every = _every(pairs, replay)
     sensed = range(moved, moved + (ANGLES if every else 0))
     noisy = any(kind.sensing and kind.sensing.noisy for kind in kinds)
+    noisy = noisy or (replay is not None and replay.noisy)
     noise = range(sensed.stop, sensed.stop + (NOISE if noisy else 0))
-    carried = noise.stop
+    replayed = range(noise.stop, noise.stop + (replay.carried if replay else 0))
+    carried = replayed.stop
     path, origin = 0, PATH * sum(kind.path_count for kind in kinds)
     taped = origin + 1
     played = sum(is_taped(kind) for kind in kinds) if tape else 0
-    changing = origin + (1 + TAPED * played if tape else 0)
+    sensed_nominal = origin + (1 + TAPED * played if tape else 0)
+    errors = len(replay.errors) if replay else 0
+    nominal = range(sensed_nominal, sensed_nominal + (1 + TAPED * errors if errors else 0))
+    changing = nominal.stop
     lasting = changing + len(bodies)
+    of_replay = range(lasting, lasting + (len(replay.parameters) if replay else 0))
+    lasting = of_replay.stop
     slots = []
     for joint, kind in pairs:
         n_q, n_u = (joint.coordinates, joint.speeds) if kind.in_state else (0, 0)
@@ -102,14 +118,15 @@ def layout(
         path, carried = path + PATH * kind.path_count, carried + n_c
     momentum = range(lasting, lasting + (RATE if bound else 0))
     return Layout(
-        tuple(slots), bound, carried, sensed, noise, every, changing,
-        range(changing, changing + len(bodies)), momentum, momentum.stop, origin if tape else None,
+        tuple(slots), bound, carried, sensed, noise, replayed, every, changing, nominal,
+        range(changing, changing + len(bodies)), of_replay, momentum, momentum.stop,
+        origin if tape else None,
     )  # fmt: skip
 
 
-def _every(pairs: list[tuple[Joint, JointTakeoff]]) -> float | None:
+def _every(pairs: list[tuple[Joint, JointTakeoff]], replay: Replay | None) -> float | None:
     """The time between the ticks of all laws, s; SomersaultError where they differ."""
-    every: float | None = None
+    every = None if replay is None else replay.every
     for joint, kind in pairs:
         if kind.sensing is None:
             continue

@@ -60,8 +60,11 @@ def numbers(takeoff: Takeoff, settled: tuple[JointPlan, ...]) -> dict[Name, floa
     if takeoff.angular_velocity is None and takeoff.angular_momentum is None:
         result["takeoff", "spin"] = 0.0 if takeoff.spin is None else takeoff.spin
         result |= {("takeoff", n): getattr(takeoff, n) for n in ("tilt_rate", "twist_rate")}
-    if any(plan.does.sensing and plan.does.sensing.noisy for plan in settled):
+    laws = [takeoff.replay, *(plan.does.sensing for plan in settled)]
+    if any(law is not None and law.noisy for law in laws):
         result["takeoff", "noise"] = takeoff.noise
+    if takeoff.replay is not None:
+        result |= takeoff.replay.numbers
     for plan in settled:
         result |= plan.does.numbers(plan.joint)
     return result

@@ -3,38 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import lru_cache
 
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.engine import Kernel, Solution
+from somersault.engine import Solution
 from somersault.flight._batch import Begun
 from somersault.flight._course import Course
 from somersault.flight._report import ENDINGS, TURNS, Report, landing_error
-from somersault.flight._system import System
-from somersault.flight._watch import ANGLES, values, watched
+from somersault.flight._system import System, reader
+from somersault.flight._watch import ANGLES, watched
 from somersault.simulation import ENDED, LANDING_ERROR
 
 _KEPT = ("time", "steps")  # of a flight that failed: when and how it gave up
 _FIRST_FAILED = min(ENDINGS.code(word) for word in ENDINGS.failed)
 
 
-@lru_cache(maxsize=64)
-def reader(names: tuple[str, ...], system: System) -> Kernel:
-    """The quantities of (angles, state, time, parameters), compiled; once for a system."""
-    layout, axes = system.layout, system.model.axes
-    return Kernel(values(names, system.quantities, layout.state, layout.parameters, axes))
-
-
 def watch_from_takeoff(report: Report, begun: Begun) -> None:
-    """Set the watched rows of flights as they are at takeoff: the angles, then each extreme."""
+    """Set the extremes of flights as they are at takeoff."""
     system, angles = begun.batch.system, begun.starts.angles
     states, rows = np.split(begun.rows, [system.layout.state], 1)
-    rows[:, : angles.shape[1]] = angles
     if report.extremes:
         zero = np.zeros((len(states), 1))
-        at = np.concatenate([angles, states, zero, begun.course.parameters(zero)[:, 0]], 1)
+        parameters = begun.course.parameters(zero, states[:, None])[:, 0]
+        at = np.concatenate([angles, states, zero, parameters], 1)
         rows[:, angles.shape[1] :] = np.repeat(reader(report.extremes, system)(at), 2, 1)
 
 
@@ -87,6 +79,6 @@ def _read(
     read = dict(zip(ANGLES, np.moveaxis(angles, -1, 0), strict=True))
     others = tuple(name for name in names if name not in ANGLES)
     if others:
-        at = np.concatenate([angles, states, times[..., None], course.parameters(times)], 2)
+        at = np.concatenate([angles, states, times[..., None], course.parameters(times, states)], 2)
         read |= zip(others, np.moveaxis(reader(others, system)(at), -1, 0), strict=True)
     return read

@@ -13,6 +13,7 @@ from typing import Any, cast
 import numpy as np
 
 from somersault._core.errors import SomersaultError
+from somersault.flight._replay import Replay
 from somersault.flight._spec_motion import Compliance, OffNominal, Recording
 from somersault.flight._takeoff import Takeoff
 from somersault.flight.behaviours import Angle, JointTakeoff
@@ -51,6 +52,7 @@ class Keys:
     until: str | None = None
     takeoff: Takeoff = field(default_factory=Takeoff)
     joints: Mapping[str, JointTakeoff] = field(default_factory=dict)
+    replay: Replay | None = None
     motion: Recording | None = None
     compliance: Compliance | None = None
     off_nominal: OffNominal | None = None
@@ -77,7 +79,7 @@ def parsed(given: Mapping[str, Any], beside: Path) -> dict[str, Any]:
     joints = dict(keys.joints)
     if keys.motion is not None:
         joints = keys.motion.joints(body, keys.duration or 1.0, joints)
-    takeoff = replace(keys.takeoff, joints=joints)
+    takeoff = replace(keys.takeoff, joints=joints, replay=keys.replay)
     for change in (keys.compliance, keys.off_nominal):
         if change is not None:
             takeoff = change.applied(body, takeoff)
@@ -103,8 +105,9 @@ def _found(given: Mapping[str, Any], beside: Path) -> dict[str, Any]:
     tables = dict(given)
     if "model" in tables:
         tables["model"] = model_beside(tables["model"], beside)
-    if isinstance(tables.get("takeoff"), Mapping) and "joints" in tables["takeoff"]:
-        raise SomersaultError("takeoff.joints is no key of a SPEC; write [joints.NAME]")
+    for key, instead in (("joints", "joints.NAME"), ("replay", "replay")):
+        if isinstance(tables.get("takeoff"), Mapping) and key in tables["takeoff"]:
+            raise SomersaultError(f"takeoff.{key} is no key of a SPEC; write [{instead}]")
     joints = tables.get("joints")
     if isinstance(joints, Mapping):
         tables["joints"] = {name: _beside(joint, beside) for name, joint in joints.items()}
@@ -135,9 +138,9 @@ def tables(maneuver: Any, path: Path) -> dict[str, Any]:
         result["axes"] = list(model.axes)
     result |= {k: v for k, v in plain(maneuver).items() if k in _OPTIONS}
     takeoff = plain(maneuver.takeoff)
-    joints = takeoff.pop("joints", {})
     result["takeoff"] = takeoff
-    result["joints"] = joints
+    for key in ("replay", "joints"):
+        result[key] = takeoff.pop(key, {})
     return {name: value for name, value in result.items() if not isinstance(value, dict) or value}
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from typing import Any
 
@@ -21,8 +21,10 @@ from somersault.dynamics import (
     placements,
 )
 from somersault.dynamics.vectors import Vec, matvec, solve_symmetric, vsub
-from somersault.flight._layout import ATTITUDE, RATE, Layout, Slot, layout
+from somersault.engine import CLOCK, clock_at
+from somersault.flight._layout import ATTITUDE, RATE, TAPED, Layout, Slot, layout
 from somersault.flight._plane import turning
+from somersault.flight._replay import ERRORS, Replay
 from somersault.flight._watch import VELOCITIES, named, nearest
 from somersault.flight.behaviours import Coupled, Here, JointTakeoff, Known, Senses
 from somersault.laws import Noise
@@ -34,10 +36,11 @@ class Symbols:
     """State `y`, time `t` and parameters `p` of a model's flight, and what follows from them."""
 
     def __init__(
-        self, model: Model, kinds: tuple[JointTakeoff, ...], bodies: tuple[str, ...], tape: bool
-    ) -> None:
-        self.model, self.bodies = model, bodies
-        self.layout: Layout = layout(model, kinds, bodies, tape)
+        self, model: Model, kinds: tuple[JointTakeoff, ...], bodies: tuple[str, ...], tape: bool,
+        replay: Replay | None,
+    ) -> None:  # fmt: skip
+        self.model, self.bodies, self.replay = model, bodies, replay
+        self.layout: Layout = layout(model, kinds, bodies, tape, replay)
         self.y = ca.SX.sym("y", self.layout.state)
         self.t = ca.SX.sym("t")
         self.p = ca.SX.sym("p", self.layout.parameters)
@@ -54,6 +57,13 @@ class Symbols:
         return link_tree(
             self.model, {n: self.p[k] for k, n in zip(places, self.bodies, strict=True)}
         )
+
+    @cached_property
+    def clock(self) -> tuple[Any, Any, Any]:
+        """The phase, at which paths and tape are, its rate and its acceleration."""
+        if self.replay is None:
+            return self.t, 1.0, 0.0
+        return clock_at(self._at(self.y, self.layout.replay[:CLOCK]), self.t)
 
     # ----------------------------------------------------------------------------- the joints
 
@@ -79,15 +89,17 @@ class Symbols:
     def _here(self, slot: Slot) -> Here:
         name, kind = slot.joint.name, slot.kind
         numbers = zip(kind.parameters(slot.joint), self._at(self.p, slot.lasting), strict=True)
+        phase, fast, faster = self.clock
         paths = []
         for place_ in slot.paths:
             since, *coefficients = self._at(self.p, place_)
-            paths.append(polynomial(self.t - since, coefficients))
+            value, rate, bend = polynomial(phase - since, coefficients)
+            paths.append((value, fast * rate, fast * fast * bend + faster * rate))
         tape: Any = 0.0
         if slot.tape:
             assert self.layout.tape is not None
             since = self.p[self.layout.tape]
-            tape = polynomial(self.t - since, self._at(self.p, slot.tape))[0]
+            tape = polynomial(phase - since, self._at(self.p, slot.tape))[0]
         return Here(
             slot.joint, self._at(self.y, slot.q), self._at(self.y, slot.u), self.t,
             _Numbers(name, numbers), tuple(paths), self._outboard_of(name), tape,
@@ -214,12 +226,33 @@ class Symbols:
         angles = nearest(self.quaternion, self._at(self.y, where.sensed), model.axes)
         known = named(lambda *_: self.quantities, angles, self.y, self.t, self.p, model.axes)
         noise = Noise(self._at(self.y, where.noise))
-        senses = Senses({**known, "time": self.t}, noise.normal)
+        known["time"] = self.t
+        if self.replay is not None:
+            known["phase"], known["phase_rate"], _ = self.clock
+        senses = Senses(known, noise.normal)
         own: list[Any] = []
+        if self.replay is not None:
+            names = self.replay.parameters
+            numbers = dict(zip(names, self._at(self.p, where.replay_numbers), strict=True))
+            perceived = Senses({**known, **self._errors(known)}, noise.normal)
+            own += self.replay.tick(self._at(self.y, where.replay), self.t, numbers, perceived)
         for slot in where.slots:
             if slot.kind.sensing is not None:
                 own += slot.kind.sensing.tick(self.here[slot.joint.name], senses)
         return ca.vertcat(*angles, *noise.state, *own)
+
+    def _errors(self, known: Mapping[str, Any]) -> dict[str, Any]:
+        """What is sensed less what it was in the nominal flight at the same phase; of those that
+        the replay's law does not have, the names."""
+        assert self.replay is not None
+        result = dict.fromkeys(ERRORS, 0.0)
+        if self.replay.errors:
+            since, *powers = self._at(self.p, self.layout.nominal)
+            for k, name in enumerate(self.replay.errors):
+                own = powers[TAPED * k : TAPED * (k + 1)]
+                nominal, _, _ = polynomial(self.clock[0] - since, own)
+                result[name] = known[ERRORS[name]] - nominal
+        return result
 
     @cached_property
     def gauge(self) -> Any:

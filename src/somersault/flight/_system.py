@@ -19,8 +19,9 @@ from somersault._core.errors import SomersaultError
 from somersault.dynamics import Equations
 from somersault.engine import Integrator, Kernel
 from somersault.flight._layout import Layout
+from somersault.flight._replay import Replay
 from somersault.flight._symbols import Symbols
-from somersault.flight._watch import longest, watch
+from somersault.flight._watch import longest, values, watch
 from somersault.flight.behaviours import JointTakeoff
 from somersault.model import FREE_IT, Model
 
@@ -33,9 +34,17 @@ def system(
     bodies: tuple[str, ...] = (),
     extremes: tuple[str, ...] | None = None,
     tape: bool = False,
+    replay: Replay | None = None,
 ) -> System:
     """The system of a model whose joints are of these kinds, compiled once."""
-    return System(model, kinds, event, bodies, extremes, tape)
+    return System(model, kinds, event, bodies, extremes, tape, replay)
+
+
+@lru_cache(maxsize=64)
+def reader(names: tuple[str, ...], system: System) -> Kernel:
+    """The quantities of (angles, state, time, parameters), compiled; once for a system."""
+    layout, axes = system.layout, system.model.axes
+    return Kernel(values(names, system.quantities, layout.state, layout.parameters, axes))
 
 
 class System:
@@ -43,7 +52,8 @@ class System:
 
     `bodies` names numbers of the bodies that differ between flights, as `Equations` does.
     `extremes`, unless it is None, are what is watched besides the turns (`_watch`). With `tape`
-    the torques of the nominal motion act at compliant joints.
+    the torques of the nominal motion act at compliant joints. `replay` is the kind of law by which
+    paths and tape are played.
     """
 
     def __init__(
@@ -54,6 +64,7 @@ class System:
         bodies: tuple[str, ...],
         extremes: tuple[str, ...] | None,
         tape: bool,
+        replay: Replay | None,
     ) -> None:
         if not model.free:
             raise SomersaultError(f"{model.name} has a fixed base, so it cannot fly; {FREE_IT}")
@@ -63,9 +74,14 @@ class System:
                     f"joint {joint.name} is on no path, so there is no motor tape to replay; make "
                     "it compliant, prescribed or locked, or leave the takeoff's tape out"
                 )
+        if replay is not None and not (tape or any(kind.path_count for kind in kinds)):
+            raise SomersaultError(
+                "nothing in this takeoff goes along a path, so there is nothing to replay; "
+                "prescribe joints, or leave its replay out"
+            )
         self.model, self.kinds, self.event = model, kinds, event
         self.bodies, self.extremes = bodies, extremes
-        self.symbols = Symbols(model, kinds, bodies, tape)
+        self.symbols = Symbols(model, kinds, bodies, tape, replay)
 
     @property
     def layout(self) -> Layout:
@@ -87,8 +103,9 @@ class System:
         slope = self._function("slope", s.slope)
         tick = None if s.tick is None else self._function("tick", s.tick)
         gauge = None if self.event is None else self._function("gauge", s.gauge)
+        clock = where.replay.start if where.replay else None
         if self.extremes is None:
-            return Integrator(slope, gauge, changing=where.changing, tick=tick)
+            return Integrator(slope, gauge, changing=where.changing, tick=tick, clock=clock)
         axes = self.model.axes
         return Integrator(
             slope,
@@ -97,6 +114,7 @@ class System:
             self._function("longest", longest(s.quaternion, s.omega, axes)),
             where.changing,
             tick,
+            clock,
         )
 
     def start(self, quaternion: Array, omega: Array, q: Array, u: Array, sensed: Array) -> Array:

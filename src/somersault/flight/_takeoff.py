@@ -12,6 +12,7 @@ from somersault._core.checks import by_name, instance
 from somersault._core.degrees import MOST_TURNS, note_degrees, note_degrees_per_second
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import MOST, number, numbers
+from somersault.flight._replay import Replay
 from somersault.flight.behaviours import JointTakeoff
 
 
@@ -42,8 +43,10 @@ class Takeoff:
     tape : sequence of float, (3,), optional
         The angular momentum (body axes, kg m²/s) at takeoff of the nominal flight whose joint
         torques are replayed to compliant joints: that of the same paths, exactly followed.
+    replay : Replay, optional
+        How fast the paths of joints and the tape are played, by a law; without it as they are.
     noise : float
-        Which noise joints with a law sense: another number gives another noise, the same number
+        Which noise laws sense: another number gives another noise, the same number
         the same.
     joints : mapping of str to JointTakeoff
         What each joint does; a left–right pair by its common name, with the left side's angles.
@@ -71,6 +74,7 @@ class Takeoff:
     position: Sequence[float] = (0.0, 0.0, 0.0)
     velocity: Sequence[float] = (0.0, 0.0, 0.0)
     tape: Sequence[float] | None = None
+    replay: Replay | None = None
     noise: float = 0.0
     joints: Mapping[str, JointTakeoff] = field(default_factory=dict)
 
@@ -78,6 +82,8 @@ class Takeoff:
         object.__setattr__(self, "joints", by_name("takeoff joints", self.joints))
         for name, joint in self.joints.items():
             instance(f"takeoff of joint {name}", joint, JointTakeoff)
+        if self.replay is not None:
+            instance("takeoff replay", self.replay, Replay)
         for name in ("somersault", "tilt", "twist", "tilt_rate", "twist_rate", "noise"):
             number(f"takeoff {name}", getattr(self, name))
         for name, turns in (("somersault", MOST_TURNS), ("tilt", 1), ("twist", MOST_TURNS)):

@@ -2,22 +2,23 @@
 
 It is recorded from the flight that follows the paths exactly: torques by inverse dynamics at
 Chebyshev points of short pieces, kept as the polynomials through them. A piece is halved until
-what is left out is hardly more than rounding, in each flight by itself.
+what is left out is hardly more than rounding, in each flight by itself. What is sensed of the body
+is recorded likewise.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import casadi as ca
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.engine import Kernel
+from somersault.engine import Kernel, Solution
 from somersault.flight._course import Course
-from somersault.flight._system import System
+from somersault.flight._system import System, reader
 from somersault.motion import TAPE_DEGREE, Path
 from somersault.simulation import Numbers
 
@@ -41,8 +42,42 @@ class Flights(Protocol):
     def rows(self) -> Array: ...
 
 
+class Kept(Protocol):
+    """What a tape keeps of flights."""
+
+    @property
+    def little(self) -> float:
+        """What is left out is told from nothing by its share of so much, at least."""
+
+    def read(self, system: System, solution: Solution, times: Array, parameters: Array) -> Array:
+        """It at the samples of a solution, (N, K, …)."""
+
+
+@dataclass(frozen=True)
+class Torques:
+    """The torques at all joint speeds, N m."""
+
+    little: ClassVar[float] = 0.0
+
+    def read(self, system: System, solution: Solution, times: Array, parameters: Array) -> Array:
+        x = np.concatenate([solution.states, times[..., None], parameters], 2)
+        return system.loads(x)[..., 6:]
+
+
+@dataclass(frozen=True)
+class Sensed:
+    """Some of what is sensed of the body, rad and rad/s; its turns must be watched."""
+
+    names: tuple[str, ...]
+    little: ClassVar[float] = 1.0
+
+    def read(self, system: System, solution: Solution, times: Array, parameters: Array) -> Array:
+        x = [solution.watched, solution.states, times[..., None], parameters]
+        return reader(self.names, system)(np.concatenate(x, 2))
+
+
 class Nominal(Protocol):
-    """The flights whose torques are recorded: those that follow their paths exactly."""
+    """The flights of which something is recorded: those that follow their paths exactly."""
 
     @property
     def system(self) -> System: ...
@@ -59,13 +94,13 @@ class Nominal(Protocol):
 @dataclass(frozen=True)
 class Tape:
     """Edges of pieces (N, P + 1), some of no length, and the powers of the time since each began
-    (N, P, joint speeds, powers)."""
+    (N, P, what is kept, powers)."""
 
     edges: Array
     powers: Array
 
     def path(self, played: list[int]) -> Path:
-        """The torques at some joint speeds side by side; before and after they hold."""
+        """Some of what is kept side by side; before and after it holds."""
         powers, spans = self.powers[:, :, played], np.diff(self.edges)
         last = spans.shape[1] - 1 - np.argmax(spans[:, ::-1] > 0, 1)
         rows = np.arange(len(last))
@@ -77,12 +112,12 @@ class Tape:
         return Path(self.edges, whole.reshape(*whole.shape[:2], -1))
 
 
-def recorded(nominal: Nominal) -> Tape:
+def recorded(nominal: Nominal, kept: Kept) -> Tape:
     """The tape where nothing is varied."""
-    return _exact(nominal, nominal.values, 1, _LONGEST)
+    return _exact(nominal, kept, nominal.values, 1, _LONGEST)
 
 
-def recorded_each(nominal: Nominal, values: Numbers, count: int, one: Tape) -> Tape:
+def recorded_each(nominal: Nominal, kept: Kept, values: Numbers, count: int, one: Tape) -> Tape:
     """The tapes of many flights, in pieces as long as those of the one tape or shorter.
 
     `values` has the numbers that differ from the nominal flight's.
@@ -93,7 +128,7 @@ def recorded_each(nominal: Nominal, values: Numbers, count: int, one: Tape) -> T
     parts = []
     for some in np.array_split(np.arange(count), -(-count * size // _AT_ONCE)):
         chosen = {n: x[some] if isinstance(x, np.ndarray) else x for n, x in values.items()}
-        parts.append(_exact(nominal, {**nominal.values, **chosen}, len(some), length))
+        parts.append(_exact(nominal, kept, {**nominal.values, **chosen}, len(some), length))
     pieces = max(part.powers.shape[1] for part in parts)
     whole = Tape(
         np.full((count, pieces + 1), nominal.duration),
@@ -108,13 +143,13 @@ def recorded_each(nominal: Nominal, values: Numbers, count: int, one: Tape) -> T
     return whole
 
 
-def _exact(nominal: Nominal, values: Numbers, count: int, length: float) -> Tape:
+def _exact(nominal: Nominal, kept: Kept, values: Numbers, count: int, length: float) -> Tape:
     """The tapes of some flights, in pieces no longer than `length`."""
     flights = nominal.begun(values, count)
     knots = np.broadcast_to(flights.course.knots, (count, flights.course.knots.shape[1]))
     edges = _divided(knots, length)
     while True:
-        tape, left_out = _recorded(nominal.system, flights, edges)
+        tape, left_out = _recorded(nominal.system, kept, flights, edges)
         again = left_out & (np.diff(edges) > _SHORTEST)
         if not again.any():
             return tape
@@ -125,22 +160,23 @@ def _exact(nominal: Nominal, values: Numbers, count: int, length: float) -> Tape
         edges = edges[:, : (edges < nominal.duration).sum(1).max() + 1]
 
 
-def _recorded(system: System, flights: Flights, edges: Array) -> tuple[Tape, Array]:
+def _recorded(system: System, kept: Kept, flights: Flights, edges: Array) -> tuple[Tape, Array]:
     """Tapes in pieces between edges (N, P + 1), and which pieces leave too much out, (N, P)."""
     count, spans = len(edges), np.diff(edges)
     times = (edges[:, :-1, None] + spans[..., None] * _POINTS).reshape(count, -1)
     times = np.minimum(times, flights.course.duration)
-    states = flights.course.solve(flights.rows, times, _TOLERANCE).states
-    parameters = np.repeat(flights.course.parameters(edges[:, :-1]), _COUNT, 1)
-    torques = system.loads(np.concatenate([states, times[..., None], parameters], 2))[..., 6:]
-    torques = torques.reshape(count, -1, _COUNT, torques.shape[-1]).swapaxes(2, 3)
-    series = _polynomials()(torques)
+    solution = flights.course.solve(flights.rows, times, _TOLERANCE)
+    begun = solution.states[:, ::_COUNT]
+    parameters = np.repeat(flights.course.parameters(edges[:, :-1], begun), _COUNT, 1)
+    values = kept.read(system, solution, times, parameters)
+    values = values.reshape(count, -1, _COUNT, values.shape[-1]).swapaxes(2, 3)
+    series = _polynomials()(values)
     scale = spans[..., None, None] ** np.arange(_COUNT)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         powers = series[..., :_COUNT] / scale
     powers = np.where(np.isfinite(powers), powers, 0.0)  # of pieces of next to no length
-    most = np.abs(torques).max((2, 3))
-    most = np.maximum(most, _LITTLE * most.max(1, keepdims=True))
+    most = np.abs(values).max((2, 3))
+    most = np.maximum(most, np.maximum(_LITTLE * most.max(1, keepdims=True), kept.little))
     left_out = np.abs(series[..., _COUNT:]).max((2, 3)) > _LEFT_OUT * most
     return Tape(edges, powers), left_out & (spans > 0)
 

@@ -10,12 +10,14 @@ from somersault._core.errors import SomersaultError
 from somersault.dynamics import parameter_values
 from somersault.flight._batch import Batch
 from somersault.flight._plane import leaves_plane
+from somersault.flight._replay import Replay
 from somersault.flight.behaviours import Coupled, declared
 from somersault.model import Model, sides
 from somersault.simulation import Name, Target
 
 _JOINT = re.compile(r"^joints\.(.+)\.([^\W\d]\w*)(?:\.(\d+))?$")
 _OF_TABLE = re.compile(r"^joints\.(.+)\.([^\W\d]\w*)\.(\w+)$")
+_REPLAY = re.compile(r"^replay\.(\w+)(?:\.(.+))?$")
 _BODY = re.compile(r"^bodies\.(.+)\.(?:(mass)|(com|position)\.([123]))$")
 _TAKEOFF = re.compile(r"^takeoff\.(\w+)(?:\.([123]))?$")
 _VECTORS = ("angular_velocity", "angular_momentum")
@@ -36,6 +38,8 @@ def targets(batch: Batch, path: str) -> tuple[Target, ...]:
     text("the name of a number", path)
     if match := _TAKEOFF.match(path):
         return _of_takeoff(batch, path, *match.groups())
+    if match := _REPLAY.match(path):
+        return _of_replay(batch, path, *match.groups())
     match = _OF_TABLE.match(path)
     if not (match and _is_joint(batch.model, match[1])):  # whose name may have dots
         match = _JOINT.match(path)
@@ -45,7 +49,7 @@ def targets(batch: Batch, path: str) -> tuple[Target, ...]:
         return _of_body(batch.model, *match.groups())
     raise SomersaultError(
         f"{shown(path)} names no number; names are like takeoff.tilt, joints.JOINT.stiffness, "
-        "joints.JOINT.times.2, bodies.BODY.mass"
+        "joints.JOINT.times.2, replay.gains.k, bodies.BODY.mass"
     )
 
 
@@ -66,6 +70,15 @@ def _of_takeoff(batch: Batch, path: str, what: str, k: str | None) -> tuple[Targ
             'something else, or give the model base = "free"'
         )
     return (Target(name, unit=_UNITS[what]),)
+
+
+def _of_replay(batch: Batch, path: str, what: str, key: str | None) -> tuple[Target, ...]:
+    name: Name = ("replay", what) if key is None else ("replay", what, key)
+    if name not in batch.values:
+        there = [".".join(map(str, n)) for n in batch.values if n[0] == "replay"]
+        has = f"it has {', '.join(there)}" if there else "it has no replay"
+        raise SomersaultError(f"{path} is no number of this takeoff; {has}")
+    return (Target(name, unit=declared(Replay)[what].unit),)
 
 
 def _spelled(name: Name) -> str:

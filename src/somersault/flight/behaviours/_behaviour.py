@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from somersault._core.array import Array
 from somersault._core.checks import truth
-from somersault._core.errors import SomersaultError
 from somersault.flight.behaviours import _changed, _declared
 from somersault.flight.behaviours._here import Here, Known
 from somersault.flight.behaviours._registry import Registry, behaviour_names
@@ -111,18 +110,9 @@ class JointTakeoff(metaclass=Registry):
     def _checked(self: Self, joint: Joint) -> Self:
         """Numbers as floats, rows as tuples; SomersaultError for what is neither."""
         where = f"joint {joint.name}"
-        changes: dict[str, Any] = {}
-        defaults = {one.name: one.default for one in fields(self)}
+        changes = _declared.checked_all(where, self, joint)
         for name, what in _declared.declared(self).items():
-            given = getattr(self, name)
-            given = defaults[name] if given is None else given
-            value = _declared.checked(where, joint, name, what, given)
-            changes[name] = value
-            if what.least is not None and isinstance(value, float) and value < what.least:
-                raise SomersaultError(
-                    f"{where} has the negative {name} {value:g}; give none, or a positive one"
-                )
-            _declared.note_strange(where, joint, name, what, value)
+            _declared.note_strange(where, joint, name, what, changes[name])
         for one in fields(self):
             if one.type in ("bool", bool):
                 changes[one.name] = truth(f"{where}: {one.name}", getattr(self, one.name))

@@ -2,48 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
-import casadi as ca
 import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
-from somersault._core.numbers import number
 from somersault.flight.behaviours import _declared
 from somersault.flight.behaviours._behaviour import JointTakeoff
 from somersault.flight.behaviours._here import Here
+from somersault.flight.behaviours._law import Law
 from somersault.flight.behaviours._sensing import Senses, Sensing
 from somersault.laws import Formula, mirrored, mirrored_name
 from somersault.model import Joint, Model
 
-_MOST_TICKS_OF_DELAY = 1_000
-_NEARLY = 1e-9  # of a tick
-_NO_TABLE = _declared.Table()
-
 
 @dataclass(frozen=True)
-class ByLaw(JointTakeoff):
-    """A joint with a `law`: a formula (`somersault.laws.Formula`) of what is sensed, by name.
-
-    Sensed are somersault, tilt, twist (rad; whole turns are counted), their rates
-    (`twist_rate` …), the angular velocity about the body's axes (`angular_velocity_1` …), joint
-    coordinates and their rates by name, and `time`. Other names are `gains`. The law is worked out
-    `every` so many seconds from takeoff on, and acts after its `delay`, which is a whole number of
-    them; before that it commands nothing. `noise` gives the standard deviation with which
-    a quantity is sensed, by its name; the deviates are those of the takeoff's `noise`.
-    """
+class ByLaw(Law, JointTakeoff):
+    """A joint with a `Law`."""
 
     bounds: ClassVar[tuple[str, ...]] = ()
     """Names of the numbers that bound what is commanded."""
-
-    law: str = field(default="", kw_only=True, metadata={"structure": True})
-    gains: Mapping[str, float] = _declared.quantity("1", default=_NO_TABLE, table=True)
-    noise: Mapping[str, float] = _declared.quantity("1", default=_NO_TABLE, table=True)
-    every: float = field(default=0.02, kw_only=True, metadata={"structure": True})
-    delay: float = field(default=0.0, kw_only=True, metadata={"structure": True})
 
     def settled(self, joint: Joint) -> JointTakeoff:
         where = f"joint {joint.name}"
@@ -51,22 +31,7 @@ class ByLaw(JointTakeoff):
             raise SomersaultError(f"{where} is a {joint.kind}, which takes no law; give it hinges")
         plan = super().settled(joint)
         assert isinstance(plan, ByLaw)
-        every, delay = (number(f"{where}: {n}", getattr(self, n)) for n in ("every", "delay"))
-        _check_times(where, every, delay)
-        names = Formula(plan.law).names
-        idle = sorted(set(plan.gains) - names)
-        if idle:
-            raise SomersaultError(
-                f"{where} has the gain {idle[0]}, which its law {plan.law!r} does not have; "
-                "correct one of them"
-            )
-        silent = sorted(set(plan.noise) - names)
-        if silent:
-            raise SomersaultError(
-                f"{where} senses {silent[0]} with noise, but its law {plan.law!r} does not have "
-                "it; leave it out"
-            )
-        return replace(plan, every=every, delay=delay)
+        return replace(plan, **plan.checked_times(where))
 
     def mirrored(self, model: Model, name: str, factor: float, offset: float) -> Any:
         plan = super().mirrored(model, name, factor, offset)
@@ -101,20 +66,12 @@ class ByLaw(JointTakeoff):
         raise SomersaultError("a law senses what was, so it does not run backwards")
 
     def kind(self) -> Any:
-        gains, noise = (dict.fromkeys(table, 0.0) for table in (self.gains, self.noise))
-        return replace(super().kind(), gains=_declared.Table(gains), noise=_declared.Table(noise))
+        return replace(super().kind(), **self.empty_tables)
 
     def parameters(self, joint: Joint) -> tuple[str, ...]:
-        tables = {"gains": self.gains, "noise": self.noise}
-        names = tuple(f"{what}.{key}" for what, table in tables.items() for key in table)
-        return (*super().parameters(joint), *names, *self.bounds)
+        return (*super().parameters(joint), *self.tables, *self.bounds)
 
     # ----------------------------------------------------------------------------- at ticks
-
-    @property
-    def waits(self) -> int:
-        """Ticks between sensing and acting."""
-        return round(self.delay / self.every)
 
     @property
     def sensing(self) -> Sensing:
@@ -124,11 +81,6 @@ class ByLaw(JointTakeoff):
     def carried(self) -> int:
         """How many numbers it carries: what is done now, and the commands that wait."""
         return 1 + self.waits
-
-    @property
-    def noisy(self) -> bool:
-        """Whether it senses with noise."""
-        return bool(self.noise)
 
     def at_takeoff(self, q: Array, u: Array) -> Array:
         """What it carries before the first tick.
@@ -172,23 +124,9 @@ class ByLaw(JointTakeoff):
         Returns
         -------
         list
-
-        Raises
-        ------
-        SomersaultError
-            For a gain that has the name of something that is sensed.
         """
-        known = dict(senses.known)
-        for name in self.gains:
-            if name in known:
-                raise SomersaultError(
-                    f"joint {here.joint.name} has a gain {name}, which is also something that is "
-                    "sensed; give the gain another name"
-                )
-            known[name] = here.numbers[f"gains.{name}"]
-        for name in self.noise:
-            known[name] = known[name] + here.numbers[f"noise.{name}"] * senses.normal()
-        waiting = [*here.carried[1:], Formula(self.law).value(known)]
+        command = self.command(f"joint {here.joint.name}", here.numbers, senses)
+        waiting = [*here.carried[1:], command]
         return [self.acted_on(here, waiting[0]), *waiting[1:]]
 
     def acted_on(self, here: Here, command: Any) -> Any:
@@ -209,30 +147,3 @@ class ByLaw(JointTakeoff):
     @property
     def conservative(self) -> bool:
         return False
-
-
-def bounded(value: Any, most: Any) -> Any:
-    """A number that is not beyond ±most; one that is none stays so."""
-    return between(value, -most, most)
-
-
-def between(value: Any, low: Any, high: Any) -> Any:
-    """A number that is not below `low` nor above `high`; one that is none stays so."""
-    return ca.if_else(value > high, high, ca.if_else(value < low, low, value))
-
-
-def _check_times(where: str, every: float, delay: float) -> None:
-    if every <= 0:
-        raise SomersaultError(f"{where} senses every {every:g} s; give a time above 0")
-    if delay < 0:
-        raise SomersaultError(f"{where} has a delay of {delay:g} s; give 0 or more")
-    ticks = delay / every
-    if ticks > _MOST_TICKS_OF_DELAY:
-        raise SomersaultError(
-            f"{where} has a delay of {ticks:.0f} ticks; make it shorter, or sense less often"
-        )
-    if abs(ticks - round(ticks)) > _NEARLY * max(ticks, 1.0):
-        raise SomersaultError(
-            f"{where} has a delay of {delay:g} s, which is no whole number of the {every:g} s "
-            "between its ticks; change one of them"
-        )

@@ -15,6 +15,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.checks import by_name
 from somersault._core.degrees import note_degrees
+from somersault._core.errors import SomersaultError
 from somersault._core.notes import note
 from somersault._core.numbers import number, numbers
 from somersault.flight.behaviours._limits import within
@@ -139,7 +140,23 @@ def declared(kind: Any) -> dict[str, Quantity]:
 # ------------------------------------------------------------------ numbers, checked and by name
 
 
-def checked(where: str, joint: Joint, name: str, what: Quantity, value: Any) -> Any:
+def checked_all(where: str, does: Any, joint: Joint | None = None) -> dict[str, Any]:
+    """The declared fields of something as floats; SomersaultError, naming the first that is none,
+    or is less than it can be."""
+    changes: dict[str, Any] = {}
+    defaults = {one.name: one.default for one in fields(does)}
+    for name, what in declared(does).items():
+        given = getattr(does, name)
+        value = checked(where, joint, name, what, defaults[name] if given is None else given)
+        if what.least is not None and isinstance(value, float) and value < what.least:
+            raise SomersaultError(
+                f"{where} has the negative {name} {value:g}; give none, or a positive one"
+            )
+        changes[name] = value
+    return changes
+
+
+def checked(where: str, joint: Joint | None, name: str, what: Quantity, value: Any) -> Any:
     """A value as floats; SomersaultError, naming it, for what is no number of this kind.
 
     A ball takes three numbers where a hinge takes one.
@@ -152,7 +169,7 @@ def checked(where: str, joint: Joint, name: str, what: Quantity, value: Any) -> 
         return Table((key, number(f"{label}.{key}", x)) for key, x in given.items())
     if what.row:
         return tuple(numbers(label, value).tolist())
-    if joint.kind == "ball" and name in ("angle", "rate"):
+    if joint is not None and joint.kind == "ball" and name in ("angle", "rate"):
         still = isinstance(value, float | int) and value == 0
         return tuple(numbers(label, (0, 0, 0) if still else value, 3).tolist())
     return number(label, value)

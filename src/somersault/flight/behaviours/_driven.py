@@ -9,8 +9,9 @@ from somersault._core.array import Array
 from somersault._core.numbers import MOST
 from somersault.flight.behaviours import _declared
 from somersault.flight.behaviours._behaviour import Angle, JointTakeoff
-from somersault.flight.behaviours._by_law import ByLaw, between, bounded
+from somersault.flight.behaviours._by_law import ByLaw
 from somersault.flight.behaviours._here import Here
+from somersault.flight.behaviours._law import between, bounded
 from somersault.flight.behaviours._moving import standing, takeoff_angle
 from somersault.model import Joint
 from somersault.simulation import Numbers

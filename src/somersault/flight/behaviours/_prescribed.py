@@ -17,7 +17,10 @@ from somersault.flight.behaviours._limits import check_limits
 from somersault.flight.behaviours._rows import in_order, sampled
 from somersault.model import Joint
 from somersault.motion import Path, check_rows, moves, polynomial
-from somersault.simulation import Numbers
+from somersault.simulation import Name, Numbers
+
+REPLAY_RATE: Name = ("replay", "rate")
+"""The rate at which paths are played at takeoff, 1 where they have none."""
 
 
 @dataclass(frozen=True)
@@ -75,6 +78,7 @@ class OnPath(JointTakeoff):
         (path,) = self.paths(joint, values, count)
         since, coefficients = path.at(np.zeros((count, 1)))
         angle, rate, _ = polynomial(-since, list(np.moveaxis(coefficients, -1, 0)))
+        rate = rate * np.reshape(values.get(REPLAY_RATE, 1.0), (-1, 1))
         return np.broadcast_to(angle, (count, 1)), np.broadcast_to(rate, (count, 1))
 
     def wanted(self, here: Here) -> list[Any]:

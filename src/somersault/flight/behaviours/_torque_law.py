@@ -7,8 +7,9 @@ from typing import Any, ClassVar
 
 from somersault._core.numbers import MOST
 from somersault.flight.behaviours import _declared
-from somersault.flight.behaviours._by_law import ByLaw, bounded
+from somersault.flight.behaviours._by_law import ByLaw
 from somersault.flight.behaviours._here import Here
+from somersault.flight.behaviours._law import bounded
 from somersault.flight.behaviours._sprung import Sprung
 
 
