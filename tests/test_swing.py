@@ -7,6 +7,7 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
+from scipy.integrate import simpson, solve_ivp
 from scipy.special import ellipk
 from trees import mujoco_addresses, quiet, to_mujoco
 
@@ -22,7 +23,18 @@ from somersault.flight import (
     released,
     swing,
 )
-from somersault.model import GROUND, Body, Joint, Model, Mount, load, mounted
+from somersault.model import (
+    GROUND,
+    ZERO,
+    Body,
+    Joint,
+    Model,
+    Mount,
+    athlete,
+    load,
+    mounted,
+    sagittal,
+)
 
 G = -GRAVITY[2]
 TURNED = ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
@@ -152,6 +164,143 @@ def test_a_swing_is_mujocos(mount: Mount, swung: Swing) -> None:
         mujoco.mj_step(m, d)
     assert d.qpos[at] == pytest.approx(swung.q[-1], abs=1e-9)
     assert d.qvel[speeds] == pytest.approx(swung.u[-1], abs=1e-8)
+
+
+# ------------------------------------------------------------------- joints that are driven
+
+
+@pytest.fixture(scope="module")
+def gymnast() -> Mount:
+    """A gymnast on a bar, seen from the side."""
+    hinge = Joint("bar", "hinge", (0.0, 1.0, 0.0))
+    bar = Body("bar", GROUND, 0.0, ZERO, (ZERO, ZERO, ZERO), joints=(hinge,))
+    flat = sagittal(athlete(1.67, 64, knees=True))
+    return mounted(flat, bar, (0.0, 0.0, 0.55), body="upper_arm")
+
+
+def test_what_goes_along_paths_moves_the_rest_as_mujocos_equations_say(gymnast: Mount) -> None:
+    """The bar's angle alone is free: its equation from MuJoCo's mass matrix, by SciPy."""
+    paths = {
+        "shoulder_flexion": JointTakeoff.prescribed(times=[0.1, 0.6], angles=[3.0, 2.4]),
+        "hip_flexion": JointTakeoff.prescribed(times=[0.0, 0.3, 0.8], angles=[-0.3, 0.5, 0.1]),
+        "knee": JointTakeoff.locked(angle=0.2),
+    }
+    found = swing(
+        gymnast.held, {"bar": 2.9}, 1.0, rates={"bar": -0.4}, joints=paths, samples=21,
+        accuracy=1e-12,
+    )  # fmt: skip
+    m = to_mujoco(gymnast.held)
+    quiet(m)
+    m.opt.gravity[:] = GRAVITY
+    d = mujoco.MjData(m)
+    at, speeds = mujoco_addresses(gymnast.held, m)
+    driven = [plan.does.whole() for plan in found.plans[1:3]]  # type: ignore[attr-defined]
+
+    def slope(t: float, y: np.ndarray) -> list[float]:
+        given = []
+        for path in driven:
+            since, powers = path.at(np.array([[t]]))
+            one = np.polynomial.Polynomial(np.ravel(powers))
+            given.append([float(one.deriv(n)(t - since.item())) for n in range(3)])
+        d.qpos[at] = [y[0], given[0][0], given[1][0], 0.2]
+        d.qvel[speeds] = [y[1], given[0][1], given[1][1], 0.0]
+        mujoco.mj_forward(m, d)
+        mass = np.zeros((m.nv, m.nv))
+        mujoco.mj_fullM(m, d, mass)
+        mass, bias = mass[np.ix_(speeds, speeds)], d.qfrc_bias[speeds]
+        known = mass[0, 1] * given[0][2] + mass[0, 2] * given[1][2]
+        return [y[1], (-bias[0] - known) / mass[0, 0]]
+
+    whole = solve_ivp(
+        slope, (0.0, 1.0), [2.9, -0.4], method="DOP853", rtol=1e-11, atol=1e-11,
+        t_eval=found.times,
+    )  # fmt: skip
+    assert found.q[:, 0] == pytest.approx(whole.y[0], abs=1e-8)
+    assert found.u[:, 0] == pytest.approx(whole.y[1], abs=1e-7)
+
+
+def test_torques_and_dampers_drive_as_in_mujoco(gymnast: Mount) -> None:
+    joints = {
+        "hip_flexion": JointTakeoff.torque(angle=0.2, torque=30.0, damping=5.0),
+        "shoulder_flexion": JointTakeoff.sprung(angle=3.0, stiffness=200.0, rest=2.8, damping=3.0),
+    }
+    found = swing(gymnast.held, {"bar": 2.0}, 0.6, joints=joints, samples=7, accuracy=1e-12)
+    m = to_mujoco(gymnast.held, timestep=1e-4)
+    quiet(m)
+    m.opt.gravity[:], m.opt.integrator = GRAVITY, mujoco.mjtIntegrator.mjINT_RK4
+    d = mujoco.MjData(m)
+    at, speeds = mujoco_addresses(gymnast.held, m)
+    d.qpos[at] = found.q[0]
+    by = {name: speeds[gymnast.held.speed_slice(name).start] for name in joints}
+    places = {name: at[gymnast.held.coordinate_slice(name).start] for name in joints}
+
+    def push(m: mujoco.MjModel, d: mujoco.MjData) -> None:
+        hip, shoulder = (by[name] for name in joints)
+        d.qfrc_passive[hip] += 30.0 - 5.0 * d.qvel[hip]
+        stretched = d.qpos[places["shoulder_flexion"]] - 2.8
+        d.qfrc_passive[shoulder] += -200.0 * stretched - 3.0 * d.qvel[shoulder]
+
+    mujoco.set_mjcb_passive(push)
+    try:
+        for _ in range(6000):
+            mujoco.mj_step(m, d)
+    finally:
+        mujoco.set_mjcb_passive(None)
+    assert d.qpos[at] == pytest.approx(found.q[-1], abs=1e-7)
+
+
+def test_energy_comes_from_the_torques_of_what_is_driven(gymnast: Mount) -> None:
+    kick = JointTakeoff.prescribed(times=[0.0, 0.5], angles=[-0.3, 0.9])
+    found = swing(
+        gymnast.held, {"bar": 1.0, "shoulder_flexion": np.pi}, 0.6, joints={"hip_flexion": kick},
+        samples=6001, accuracy=1e-12,
+    )  # fmt: skip
+    at = gymnast.held.speed_slice("hip_flexion").start
+    power = found.joint_torques[:, at] * found.u[:, at]
+    energy = found.dataset["energy"].values
+    work = simpson(power, x=found.times)
+    assert abs(work) > 5.0
+    assert energy[-1] - energy[0] == pytest.approx(work, abs=1e-6)
+    free = [k for k in range(len(found.model.joints)) if k != at]
+    assert np.abs(found.joint_torques[:, free]).max() < 1e-9
+
+
+def test_a_law_senses_other_joints(gymnast: Mount) -> None:
+    """The hips bend at a rate once the bar has been passed, and hear of it a tick late."""
+    law = JointTakeoff.rate_law(
+        angle=0.0, law="where(bar > 2.6, 2, 0)", every=0.02, delay=0.02, most_rate=5.0
+    )
+    found = swing(
+        gymnast.held, {"bar": 2.0, "shoulder_flexion": np.pi}, 0.6, rates={"bar": 2.0},
+        joints={"hip_flexion": law}, samples=6001,
+    )  # fmt: skip
+    bar, hip = found.q[:, 0], found.dataset["angle"].sel(joint="hip_flexion").values
+    passed = found.times[np.argmax(bar > 2.6)]
+    begins = found.times[np.argmax(hip > 1e-9)]
+    assert 0.02 <= begins - passed <= 0.042
+    with pytest.raises(SomersaultError, match="twist"):
+        swing(
+            gymnast.held, {}, 1.0,
+            joints={"hip_flexion": JointTakeoff.rate_law(angle=0.0, law="twist")},
+        )  # fmt: skip
+
+
+def test_driven_joints_that_make_no_sense_are_refused(gymnast: Mount) -> None:
+    still = JointTakeoff.locked(angle=0.2)
+    with pytest.raises(SomersaultError, match="leave it out of angles"):
+        swing(gymnast.held, {"knee": 0.1}, 1.0, joints={"knee": still})
+    with pytest.raises(SomersaultError, match="leave it out of rates"):
+        swing(gymnast.held, {}, 1.0, rates={"knee": 0.1}, joints={"knee": still})
+    every = {joint.name: JointTakeoff.locked() for joint in gymnast.held.joints}
+    with pytest.raises(SomersaultError, match="moves by itself"):
+        swing(gymnast.held, {}, 1.0, joints=every)
+    with pytest.raises(SomersaultError, match="hold balances a spin"):
+        swing(
+            gymnast.held, {}, 1.0,
+            joints={"knee": JointTakeoff.sprung(angle=0.1, stiffness=1.0, hold=True)},
+        )  # fmt: skip
+    with pytest.raises(SomersaultError, match="nominal spin"):
+        swing(gymnast.held, {}, 1.0, joints={"knee": JointTakeoff.sprung(angle=0.1, K=1.0)})
 
 
 # ------------------------------------------------------------------------------- release

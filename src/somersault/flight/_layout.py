@@ -1,8 +1,9 @@
 """Where the numbers of a flight stand: in its state, and among its parameters.
 
-The state is (quaternion, ω, coordinates and speeds of the joints that are part of it). Where none
-is only the attitude is unknown: then the state is the quaternion alone, and ω is what the angular
-momentum, three parameters more, leaves it. Where joints have laws the state ends with what is
+The state is (quaternion, ω, coordinates and speeds of the joints that are part of it), without the
+first two where something holds the base. Where no joint is part of it only the attitude is unknown:
+then the state is the quaternion alone, and ω is what the angular momentum, three parameters more,
+leaves it. Where joints have laws the state ends with what is
 carried from tick to tick: the angles as they were last sensed, the state of the noise, the phase
 and what waits of the replay, and each joint's own. Parameters are first those that change on the
 way (paths, the motor tape, what is sensed of the nominal flight), then those that stay (bodies, the
@@ -64,11 +65,6 @@ class Layout:
     parameters: int
     tape: int | None
 
-    @property
-    def base(self) -> int:
-        """Numbers of the state that are the base's."""
-        return ATTITUDE if self.bound else ATTITUDE + RATE
-
 
 def layout(
     model: Model, kinds: tuple[JointTakeoff, ...], bodies: tuple[str, ...], tape: bool,
@@ -81,8 +77,8 @@ def layout(
     """
     pairs = list(zip(model.joints, kinds, strict=True))
     moving = [joint for joint, kind in pairs if kind.in_state]
-    bound = not moving
-    q = ATTITUDE if bound else ATTITUDE + RATE
+    bound = model.free and not moving
+    q = (ATTITUDE if bound else ATTITUDE + RATE) if model.free else 0
     u = q + sum(joint.coordinates for joint in moving)
     moved = u + sum(joint.speeds for joint in moving)
     every = _every(pairs, replay)

@@ -9,9 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import casadi as ca
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -20,15 +19,18 @@ from somersault._core.checks import by_name, instance, shown, whole_number
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number, numbers
 from somersault.dynamics import Equations
-from somersault.engine import STATUS, Integrator
+from somersault.engine import STATUS
+from somersault.flight._course import Course
+from somersault.flight._held import held_system
+from somersault.flight._plans import by_joint, plans
+from somersault.flight._plans import numbers as numbers_of
 from somersault.flight._prop import Prop
+from somersault.flight._start import Starts
+from somersault.flight._takeoff import Takeoff
+from somersault.flight.behaviours import JointPlan, JointTakeoff, Sprung, begin, kinds
 from somersault.history import summary
-from somersault.model import (
-    Model,
-    centre_of_mass,
-    pose,
-    spread,
-)
+from somersault.laws import seeds
+from somersault.model import Model, as_vector, centre_of_mass, pose, spread
 from somersault.view import Filmed
 
 if TYPE_CHECKING:
@@ -48,6 +50,9 @@ class Swing(Filmed):
         s; the last is when it ended.
     q, u : ndarray, (T, joints)
         Joint coordinates and rates.
+    joint_torques : ndarray, (T, joints)
+        What acts at the joints, by springs, dampers, muscles and stops, N m (N for a slide): the
+        inverse dynamics of the swing.
     ended : str
         "duration" or "event".
     dataset : xarray.Dataset
@@ -60,7 +65,9 @@ class Swing(Filmed):
     times: Array
     q: Array
     u: Array
+    joint_torques: Array
     ended: str
+    plans: tuple[JointPlan, ...]
 
     def __repr__(self) -> str:
         return f"{summary(self)}, ended by {self.ended}"
@@ -93,14 +100,33 @@ class Swing(Filmed):
     @cached_property
     def stop_torques(self) -> Array:
         """What the stops give at each joint, (T, joints), N m."""
-        return np.array([_stop_torques(self.model, self.stops, *x) for x in self._states()])
+        given = np.zeros(self.q.shape)
+        for name, stop in self.stops.items():
+            k = self.model.coordinate_slice(name).start
+            given[:, k] = [stop.torque(q, u) for q, u in zip(*self._states(k), strict=True)]
+        return given
+
+    def _states(self, k: int) -> tuple[list[float], list[float]]:
+        return self.q[:, k].tolist(), self.u[:, k].tolist()
 
     @cached_property
     def spring_torques(self) -> Array:
-        """What the joints' springs give, (T, joints), N m (N for a slide)."""
-        joints = self.model.joints
-        k, rest = (np.array([getattr(j, name) for j in joints]) for name in ("stiffness", "rest"))
+        """What springs give at joints that have no path, (T, joints), N m (N for a slide)."""
+        sprung = [p.does if isinstance(p.does, Sprung) else Sprung() for p in self.plans]
+        k, rest = (
+            np.array([getattr(does, name) or 0.0 for does in sprung])
+            for name in ("stiffness", "rest")
+        )
         return -k * (self.q - rest)
+
+    @cached_property
+    def spring_energy(self) -> Array:
+        """What the springs hold, (T,), J."""
+        energies = [
+            np.broadcast_to(plan.does.energy(plan.joint, self.q[:, k : k + 1]), len(self.q))
+            for k, plan in enumerate(self.plans)
+        ]
+        return np.asarray(np.sum(energies, 0))
 
     @cached_property
     def stop_energy(self) -> Array:
@@ -123,7 +149,7 @@ class Swing(Filmed):
         import xarray as xr
 
         kinetic = self.equations.kinetic_energy(self.q, self.u)
-        spring = self.equations.spring_energy(self.q)
+        spring = self.spring_energy
         along, joule = ("time", "joint"), {"units": "J"}
         return xr.Dataset(
             {
@@ -131,6 +157,7 @@ class Swing(Filmed):
                 "rate": (along, self.u, {"units": "rad/s or m/s"}),
                 "stop_torque": (along, self.stop_torques, {"units": "N m or N"}),
                 "spring_torque": (along, self.spring_torques, {"units": "N m or N"}),
+                "joint_torque": (along, self.joint_torques, {"units": "N m or N"}),
                 "kinetic_energy": ("time", kinetic, joule),
                 "spring_energy": ("time", spring, joule),
                 "stop_energy": ("time", self.stop_energy, joule),
@@ -146,9 +173,6 @@ class Swing(Filmed):
             {"model": self.model.name, "ended": self.ended},
         )  # fmt: skip
 
-    def _states(self) -> list[tuple[list[float], list[float]]]:
-        return list(zip(self.q.tolist(), self.u.tolist(), strict=True))
-
 
 def swing(
     model: Model,
@@ -156,9 +180,11 @@ def swing(
     duration: float,
     *,
     rates: Mapping[str, float] | None = None,
+    joints: Mapping[str, JointTakeoff] | None = None,
     gravity: Sequence[float] = GRAVITY,
     until: tuple[str, float] | None = None,
     stops: Mapping[str, Prop] | None = None,
+    noise: float = 0.0,
     samples: int = 401,
     accuracy: float = 1e-10,
 ) -> Swing:
@@ -167,11 +193,14 @@ def swing(
     Parameters
     ----------
     model : Model
-        With a fixed base, such as a `mounted` one; its joints are hinges and slides, with their
-        springs and dampers.
+        With a fixed base, such as a `mounted` one; its joints are hinges and slides.
     angles, rates : mapping of str to float
         At the start, by joint, rad and rad/s; a joint that is not named is at its reference, at
         rest.
+    joints : mapping of str to JointTakeoff, optional
+        What joints do that do not just swing with their springs and dampers: they may go along
+        paths, be driven by torques, or follow laws of what is sensed of other joints. Their angles
+        and rates stand here.
     duration : float
         s.
     gravity : sequence of float, (3,)
@@ -180,6 +209,8 @@ def swing(
         A joint and the angle (rad) at which the swing ends, found to rounding.
     stops : mapping of str to Prop, optional
         Props by joint.
+    noise : float
+        Which deviates there are where laws sense with noise, as in `Takeoff`.
     samples : int
         How many evenly spaced times are kept.
     accuracy : float
@@ -192,7 +223,8 @@ def swing(
     Raises
     ------
     SomersaultError
-        For a free base, a ball joint, an unknown name, or anything that is no number.
+        For a free base, a ball joint, an unknown name, joints none of which moves by itself, or
+        anything that is no number.
 
     Examples
     --------
@@ -200,6 +232,10 @@ def swing(
     >>> hanging = so.load("furrer", base="fixed")
     >>> so.swing(hanging, {"left_shoulder": 0.3}, 0.5).ended
     'duration'
+    >>> raised = so.JointTakeoff.prescribed(times=[0.0, 0.4], angles=[0.0, 1.2])
+    >>> swung = so.swing(hanging, {}, 0.5, joints={"left_shoulder": raised})
+    >>> round(float(swung.q[-1, 0]), 6)
+    1.2
     """
     props = {n: instance(f"stop {n}", s, Prop) for n, s in by_name("stops", stops).items()}
     _check(instance("model", model, Model), props)
@@ -209,22 +245,63 @@ def swing(
         raise SomersaultError(f"accuracy {accuracy:g} is out of reach; give 1e-14 to 1e-2")
     whole_number("samples", samples, 2, _MOST_SAMPLES)
     g = numbers("gravity", gravity, 3)
+    settled = _settled(model, angles, by_name("rates", rates), by_name("joints", joints))
+    if not any(plan.does.in_state for plan in settled):
+        raise SomersaultError("no joint of this swing moves by itself; leave one of them free")
+    system = held_system(
+        model, kinds(settled), as_vector(g), tuple(props.items()), _until(model, until)
+    )
+    values = numbers_of(Takeoff(noise=noise), settled)
+    q, u = begin(settled, values, 1)
+    nowhere = np.zeros((1, 3))
+    begun = Starts(np.zeros((1, 4)), nowhere, q, u, nowhere, values, np.empty((1, 0)))
+    course = Course(system, settled, begun, duration)
+    times = np.linspace(0.0, duration, samples)
+    sensed = nowhere
+    if system.layout.noise:
+        sensed = np.concatenate([nowhere, seeds(np.reshape(values["takeoff", "noise"], 1))], 1)
+    start = system.start(begun.quaternion, begun.omega, q, u, sensed)
+    solution = course.solve(start, times, number("accuracy", accuracy))
+    before = times < solution.end[0]
+    states = np.concatenate([solution.states[0][before], solution.final])
+    moments = np.append(times[before], solution.end)
+    parameters = course.parameters(moments[None], states[None])[0]
+    _, coordinates, speeds = system.read(states, moments, parameters)
+    acting = system.loads(np.concatenate([states, moments[:, None], parameters], 1))[:, 6:]
+    ended = STATUS[float(solution.status[0])]
+    return Swing(model, g, props, moments, coordinates, speeds, acting, ended, settled)
+
+
+def _settled(
+    model: Model, angles: Mapping[str, float], rates: Mapping[str, float],
+    joints: Mapping[str, JointTakeoff],
+) -> tuple[JointPlan, ...]:  # fmt: skip
+    """What each joint does."""
+    for name, one in joints.items():
+        instance(f"joint {name}", one, JointTakeoff)
+    given = by_joint(model, joints)
+    for what, at_start in (("angle", angles), ("rate", rates)):
+        for name in spread(model, by_name(f"{what}s", at_start), mirrored=True):
+            if name in given:
+                raise SomersaultError(
+                    f"joint {name} is told what to do, so its {what} at the start stands there; "
+                    f"leave it out of {what}s"
+                )
     q0 = pose(model, angles)
     if q0.ndim != 1:
         raise SomersaultError("angles of a swing must be one number each; swing from each pose")
     u0 = np.zeros(len(model.speeds))
-    for name, rate in spread(model, by_name("rates", rates), mirrored=True).items():
+    for name, rate in spread(model, rates, mirrored=True).items():
         u0[model.speed_slice(name)] = number(f"rate of {name}", np.asarray(rate)[()])
-    solver = Integrator(_slope(model, g, props), None if until is None else _gauge(model, until))
-    times = np.linspace(0.0, duration, samples)
-    start = np.concatenate([q0, u0])[None]
-    solution = solver.solve(start, np.zeros((1, 0)), times, number("accuracy", accuracy))
-    before = times < solution.end[0]
-    states = np.concatenate([solution.states[0][before], solution.final])
-    moments = np.append(times[before], solution.end)
-    n = len(q0)
-    ended = STATUS[float(solution.status[0])]
-    return Swing(model, g, props, moments, states[:, :n], states[:, n:], ended)
+    for joint, angle, rate in zip(model.joints, q0.tolist(), u0.tolist(), strict=True):
+        if joint.name not in given and joint.follows is None:
+            kind = "sprung" if joint.stiffness else "free"
+            given[joint.name] = JointTakeoff(kind, angle=angle, rate=rate)
+    settled = plans(model, Takeoff(joints=given))
+    held = [p.joint.name for p in settled if isinstance(p.does, Sprung) and p.does.hold]
+    if held:
+        raise SomersaultError(f"joint {held[0]}: hold balances a spin, and a swing has none")
+    return settled
 
 
 def height_energy(equations: Equations, q: ArrayLike, gravity: ArrayLike = GRAVITY) -> Array:
@@ -260,36 +337,12 @@ def _check(model: Model, stops: Mapping[str, Prop]) -> None:
         model.joint(name)
 
 
-# ------------------------------------------------------------------------------- symbols
-
-
-def _slope(model: Model, gravity: Array, stops: Mapping[str, Prop]) -> ca.Function:
-    forward = Equations(model).expression("forward_dynamics").function()
-    n = len(model.joints)
-    x = ca.SX.sym("x", 2 * n + 1)
-    q, u = x[:n], x[n : 2 * n]
-    torques = ca.vertcat(
-        *_stop_torques(model, stops, [q[k] for k in range(n)], [u[k] for k in range(n)])
-    )
-    accelerations = forward(q, u, torques, ca.DM(gravity), ca.SX(0, 1))
-    return ca.Function("slope", [x], [ca.cse(ca.densify(ca.vertcat(u, accelerations)))])
-
-
-def _gauge(model: Model, until: tuple[str, float]) -> ca.Function:
+def _until(model: Model, until: tuple[str, float] | None) -> tuple[str, float] | None:
+    if until is None:
+        return None
     if not isinstance(until, tuple | list) or len(until) != 2:
         raise SomersaultError(
             f"until must be a joint and its angle, ('bar', 1.4), not {shown(until)}"
         )
     joint, angle = until
-    x = ca.SX.sym("x", 2 * len(model.joints) + 1)
-    at = model.coordinate_slice(joint).start
-    return ca.Function("gauge", [x], [x[at] - number("until", angle)])
-
-
-def _stop_torques(
-    model: Model, stops: Mapping[str, Prop], q: Sequence[Any], u: Sequence[Any]
-) -> list[Any]:
-    return [
-        stops[joint.name].torque(q[k], u[k]) if joint.name in stops else 0.0
-        for k, joint in enumerate(model.joints)
-    ]
+    return model.joint(joint).name, number("until", angle)

@@ -207,24 +207,37 @@ class Symbols:
         """The rate of the state, but for what is carried."""
         rates = quaternion_rate(self.quaternion, self.omega)
         if not self.layout.bound:
-            alpha, _, joints = self.accelerations
-            moving = [slot.joint for slot in self.layout.slots if slot.kind.in_state]
-            rates = [*rates, *alpha]
-            for joint in moving:
-                here = self.here[joint.name]
-                rates += quaternion_rate(here.q, here.u) if joint.kind == "ball" else here.u
-            for joint in moving:
-                rates += joints[self.model.speed_slice(joint.name)]
+            alpha, _, _ = self.accelerations
+            rates = [*rates, *alpha, *self.joint_rates]
         return ca.vertcat(*rates)
+
+    @cached_property
+    def joint_rates(self) -> list[Any]:
+        """The rates of coordinates and speeds of the joints in the state."""
+        _, _, joints = self.accelerations
+        moving = [slot.joint for slot in self.layout.slots if slot.kind.in_state]
+        rates: list[Any] = []
+        for joint in moving:
+            here = self.here[joint.name]
+            rates += quaternion_rate(here.q, here.u) if joint.kind == "ball" else here.u
+        for joint in moving:
+            rates += joints[self.model.speed_slice(joint.name)]
+        return rates
+
+    @cached_property
+    def sensed(self) -> tuple[list[Any], dict[str, Any]]:
+        """Somersault, tilt and twist, and all that can be sensed by name."""
+        axes = self.model.axes
+        angles = nearest(self.quaternion, self._at(self.y, self.layout.sensed), axes)
+        return angles, named(lambda *_: self.quantities, angles, self.y, self.t, self.p, axes)
 
     @cached_property
     def tick(self) -> Any:
         """What is carried, as it is from a tick on; None where nothing is."""
-        where, model = self.layout, self.model
+        where = self.layout
         if where.every is None:
             return None
-        angles = nearest(self.quaternion, self._at(self.y, where.sensed), model.axes)
-        known = named(lambda *_: self.quantities, angles, self.y, self.t, self.p, model.axes)
+        angles, known = self.sensed
         noise = Noise(self._at(self.y, where.noise))
         known["time"] = self.t
         if self.replay is not None:

@@ -36,8 +36,26 @@ def system(
     tape: bool = False,
     replay: Replay | None = None,
 ) -> System:
-    """The system of a model whose joints are of these kinds, compiled once."""
-    return System(model, kinds, event, bodies, extremes, tape, replay)
+    """The system of a model in flight whose joints are of these kinds, compiled once.
+
+    `bodies` names numbers of the bodies that differ between flights, as `Equations` does. With
+    `tape` the torques of the nominal motion act at compliant joints. `replay` is the kind of law by
+    which paths and tape are played.
+    """
+    if not model.free:
+        raise SomersaultError(f"{model.name} has a fixed base, so it cannot fly; {FREE_IT}")
+    for joint, kind in zip(model.joints, kinds, strict=True):
+        if tape and kind.nominal().in_state:
+            raise SomersaultError(
+                f"joint {joint.name} is on no path, so there is no motor tape to replay; make "
+                "it compliant, prescribed or locked, or leave the takeoff's tape out"
+            )
+    if replay is not None and not (tape or any(kind.path_count for kind in kinds)):
+        raise SomersaultError(
+            "nothing in this takeoff goes along a path, so there is nothing to replay; "
+            "prescribe joints, or leave its replay out"
+        )
+    return System(Symbols(model, kinds, bodies, tape, replay), event is not None, extremes)
 
 
 @lru_cache(maxsize=64)
@@ -50,38 +68,16 @@ def reader(names: tuple[str, ...], system: System) -> Kernel:
 class System:
     """Right-hand side, and what can be read from a state.
 
-    `bodies` names numbers of the bodies that differ between flights, as `Equations` does.
-    `extremes`, unless it is None, are what is watched besides the turns (`_watch`). With `tape`
-    the torques of the nominal motion act at compliant joints. `replay` is the kind of law by which
-    paths and tape are played.
+    With an `event` it ends where the gauge changes sign. `extremes`, unless it is None, are what is
+    watched besides the turns (`_watch`).
     """
 
     def __init__(
-        self,
-        model: Model,
-        kinds: tuple[JointTakeoff, ...],
-        event: str | None,
-        bodies: tuple[str, ...],
-        extremes: tuple[str, ...] | None,
-        tape: bool,
-        replay: Replay | None,
+        self, symbols: Symbols, event: bool, extremes: tuple[str, ...] | None = None
     ) -> None:
-        if not model.free:
-            raise SomersaultError(f"{model.name} has a fixed base, so it cannot fly; {FREE_IT}")
-        for joint, kind in zip(model.joints, kinds, strict=True):
-            if tape and kind.nominal().in_state:
-                raise SomersaultError(
-                    f"joint {joint.name} is on no path, so there is no motor tape to replay; make "
-                    "it compliant, prescribed or locked, or leave the takeoff's tape out"
-                )
-        if replay is not None and not (tape or any(kind.path_count for kind in kinds)):
-            raise SomersaultError(
-                "nothing in this takeoff goes along a path, so there is nothing to replay; "
-                "prescribe joints, or leave its replay out"
-            )
-        self.model, self.kinds, self.event = model, kinds, event
-        self.bodies, self.extremes = bodies, extremes
-        self.symbols = Symbols(model, kinds, bodies, tape, replay)
+        self.symbols, self.model, self.bodies = symbols, symbols.model, symbols.bodies
+        self.kinds = tuple(slot.kind for slot in symbols.layout.slots)
+        self.event, self.extremes = event, extremes
 
     @property
     def layout(self) -> Layout:
@@ -102,7 +98,7 @@ class System:
         s, where = self.symbols, self.layout
         slope = self._function("slope", s.slope)
         tick = None if s.tick is None else self._function("tick", s.tick)
-        gauge = None if self.event is None else self._function("gauge", s.gauge)
+        gauge = None if not self.event else self._function("gauge", s.gauge)
         clock = where.replay.start if where.replay else None
         if self.extremes is None:
             return Integrator(slope, gauge, changing=where.changing, tick=tick, clock=clock)
@@ -121,9 +117,10 @@ class System:
         """States from full joint coordinates and speeds, (N, state), with room behind them for
         what is watched, (N, state + watched); `sensed` is what is carried of the body."""
         moving = [slot.joint.name for slot in self.layout.slots if slot.kind.in_state]
-        parts = [quaternion]
+        parts = [quaternion] if self.model.free else []
         if not self.layout.bound:
-            parts.append(omega)
+            if self.model.free:
+                parts.append(omega)
             parts += [q[:, self.model.coordinate_slice(name)] for name in moving]
             parts += [u[:, self.model.speed_slice(name)] for name in moving]
         if self.layout.every is not None:
