@@ -270,12 +270,12 @@ def test_an_ensemble_flies_what_one_flight_does() -> None:
     for k in (0, 17, 29):
         row = {name: float(x) for name, x in many.dataset.isel(sample=k).items()}
         row |= {n: float(many.dataset[n][k]) for n in vary}
-        one = so.off_nominal("furrer", takeoff, tilt=row["off"])
         its = replace(
-            one.replay, gains={**GAINS, "k": row["gain"]}, most=row["most"], rate=row["first"],
-            noise={"somersault_error": row["senses"]},
+            replay, gains={**GAINS, "k": row["gain"]}, most=row["most"], rate=row["first"],
+            noise={"somersault_error": row["senses"]}, nominal_angles=(0.0, takeoff.tilt, 0.0),
+            nominal_momentum=takeoff.angular_momentum,
         )  # fmt: skip
-        one = replace(one, replay=its, noise=row["which"])
+        one = replace(takeoff, tilt=takeoff.tilt + row["off"], replay=its, noise=row["which"])
         alone = so.ensemble(
             so.flight.flights("furrer", one, 0.8, report=["twist", "tilt"], accuracy=1e-9),
             vary={"nothing": so.Vary(adds_to="takeoff.tilt", values=[0.0])},
