@@ -36,7 +36,7 @@ RANGES = {
     "hip_flexion": (-30, 160),  # 120 there, and 40 of the lumbar spine, which has no joint here
     "hip_abduction": (-30, 45),
     "knee": (0, 150),  # 135 there by itself, more when it is pulled into a tuck
-    "ankle": (0, 110),  # from the foot in line with the shank; 50 down and 20 up of 90 there
+    "ankle": (0, 125),  # from the foot in line with the shank; 35 up of 90 bearing weight, 20 there
 }
 
 FRONT, LEFT, HEAD = np.eye(3)
