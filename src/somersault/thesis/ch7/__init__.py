@@ -9,5 +9,8 @@ _entry = partial(Entry.of, __name__)
 CHAPTER = Chapter(
     "ch7",
     "Conclusions",
-    (_entry("sec7-4", "§7.4: passive, active, and both", "_together.passive_and_active"),),
+    (
+        _entry("sec7-2", "§7.2: the somersault too", "_somersault_control.somersault_control"),
+        _entry("sec7-4", "§7.4: passive, active, and both", "_together.passive_and_active"),
+    ),
 )
