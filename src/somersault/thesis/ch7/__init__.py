@@ -12,5 +12,6 @@ CHAPTER = Chapter(
     (
         _entry("sec7-2", "§7.2: the somersault too", "_somersault_control.somersault_control"),
         _entry("sec7-4", "§7.4: passive, active, and both", "_together.passive_and_active"),
+        _entry("sec7-4-maps", "§7.4: how late, how far off, how stiff", "_maps.maps"),
     ),
 )

@@ -67,7 +67,7 @@ def _flown(arms: JointTakeoff) -> xr.Dataset:
     }
     ends = [(1 - _SPIN) * RATE, (1 + _SPIN) * RATE]
     vary["spin"] = Vary(sets="takeoff.spin", uniform=ends)
-    report = Report(["twist"], history=["somersault"], samples=_MANY + 1)
+    report = Report(("twist",), history=("somersault",), samples=_MANY + 1)
     one = flights(
         MODEL, Takeoff(spin=RATE, joints={"shoulder": arms}), _MANY * _SOMERSAULT, report=report,
         until="quarter twist",

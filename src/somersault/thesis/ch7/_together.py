@@ -33,34 +33,34 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _WHERE = "§7.4"
-_STIFFNESS, _DAMPING = 1.2, 0.13  # K_sh and B_sh; the damper is figure 4-7's 0.1 kg m²
-_SOMERSAULT = TURN / RATE  # s
-_TICKS = 36  # in a somersault
-_EVERY = _SOMERSAULT / _TICKS
-_MANY = 10  # somersaults
+STIFFNESS, DAMPING = 1.2, 0.13  # K_sh and B_sh; the damper is figure 4-7's 0.1 kg m²
+SOMERSAULT = TURN / RATE  # s
+TICKS = 36  # in a somersault
+EVERY = SOMERSAULT / TICKS
+MANY = 10  # somersaults
 _SIZE, _SEED, _SCATTER = 200, 4, 0.03  # starts, and the deviation of tilt and twist, rad
-_FASTEST = 10.0  # rad/s of arms that a law alone moves
-_HELD = -0.1, -0.2  # torques of each arm by the twist, kg m² Ω²
+FASTEST = 10.0  # rad/s of arms that a law alone moves
+HELD = -0.1, -0.2  # torques of each arm by the twist, kg m² Ω²
 
 
-def _sprung(gain: float, ticks: int, damping: float = _DAMPING) -> JointTakeoff:
+def sprung(gain: float, ticks: int, damping: float = DAMPING) -> JointTakeoff:
     """Arms on springs and dampers, with a torque by the twist."""
     return JointTakeoff.torque_law(
-        angle=ARMS, K=_STIFFNESS, B=damping, hold=True, law="k * twist", every=_EVERY,
-        delay=ticks * _EVERY, gains={"k": gain * RATE**2},
+        angle=ARMS, K=STIFFNESS, B=damping, hold=True, law="k * twist", every=EVERY,
+        delay=ticks * EVERY, gains={"k": gain * RATE**2},
     )  # fmt: skip
 
 
 def _cases() -> dict[str, JointTakeoff]:
     return {
         "rigid": JointTakeoff.locked(angle=ARMS),
-        "passive": JointTakeoff.sprung(angle=ARMS, K=_STIFFNESS, hold=True),
-        "passive, damped": JointTakeoff.sprung(angle=ARMS, K=_STIFFNESS, B=_DAMPING, hold=True),
-        "active, 2/36 late": moved(QUICK, _EVERY, 2, most_rate=_FASTEST),
-        "active, 8/36 late": moved(PATIENT, _EVERY, 8, most_rate=_FASTEST),
-        "both, 2/36 late": _sprung(_HELD[0], 2),
-        "both, 8/36 late": _sprung(_HELD[1], 8),
-        "both, 12/36 late": _sprung(_HELD[1], 12),
+        "passive": JointTakeoff.sprung(angle=ARMS, K=STIFFNESS, hold=True),
+        "passive, damped": JointTakeoff.sprung(angle=ARMS, K=STIFFNESS, B=DAMPING, hold=True),
+        "active, 2/36 late": moved(QUICK, EVERY, 2, most_rate=FASTEST),
+        "active, 8/36 late": moved(PATIENT, EVERY, 8, most_rate=FASTEST),
+        "both, 2/36 late": sprung(HELD[0], 2),
+        "both, 8/36 late": sprung(HELD[1], 8),
+        "both, 12/36 late": sprung(HELD[1], 12),
     }
 
 
@@ -74,7 +74,7 @@ def _lives() -> dict[str, xr.Dataset]:
     found = {}
     for name, arms in _cases().items():
         takeoff = Takeoff(spin=RATE, joints={"shoulder": arms})
-        one = flights(MODEL, takeoff, _MANY * _SOMERSAULT, report=["twist"], until="quarter twist")
+        one = flights(MODEL, takeoff, MANY * SOMERSAULT, report=["twist"], until="quarter twist")
         found[name] = ensemble(one, vary=vary, size=_SIZE, seed=_SEED).dataset
     return found
 
@@ -83,22 +83,22 @@ def _layout(stiffness: float, damping: float = 0.0) -> LinearSpin:
     return layout().spin.linear({"shoulder": stiffness}, {"shoulder": damping})
 
 
-def _held(gain: float, damping: float = _DAMPING) -> DelayedFeedback:
+def held(gain: float, damping: float = DAMPING) -> DelayedFeedback:
     """The sprung and damped layout with a torque by the twist."""
-    return feedback(_layout(_STIFFNESS, damping), MOVES, "torque", {"twist": gain})
+    return feedback(_layout(STIFFNESS, damping), MOVES, "torque", {"twist": gain})
 
 
 def _arms_over_twist() -> tuple[Array, Array]:
     """The arms' angle over the twist, complex, in the oscillations of the passive and of the active
     layout."""
-    part = _layout(_STIFFNESS).subsystem("tilt")
+    part = _layout(STIFFNESS).subsystem("tilt")
     names = part.coordinates
     passive = [
         mode.shape[names.index(MOVES)] / mode.shape[names.index("twist")]
         for mode in part.modes
         if mode.name != "stroboscopic" and mode.root.imag > 0
     ]
-    late, (k, c) = 2 * TURN / _TICKS, QUICK
+    late, (k, c) = 2 * TURN / TICKS, QUICK
     roots = loop(*QUICK).roots(late, 4)
     active = [(k + c * s) * np.exp(-s * late) / s for s in roots if 0.1 < s.imag < 3]
     return np.array(passive), np.array(active)
@@ -108,12 +108,12 @@ def passive_and_active() -> Result:
     """The same starts, held by springs, by a law, and by both."""
     lives = _lives()
     share = {name: _share(data) for name, data in lives.items()}
-    damped = [_held(gain).stable_delays(2 * TURN) for gain in _HELD]
+    damped = [held(gain).stable_delays(2 * TURN) for gain in HELD]
     alone = longest()
     latest = max(
         (ranges[0][1] / TURN, gain)
         for gain in np.linspace(-0.4, -0.01, 40)
-        if (ranges := _held(float(gain)).stable_delays(2 * TURN))
+        if (ranges := held(float(gain)).stable_delays(2 * TURN))
     )
     passive, active = _arms_over_twist()
     ahead = [np.degrees(np.angle(x)) for x in (passive, active)]
@@ -136,25 +136,25 @@ def passive_and_active() -> Result:
         statement(
             "sec7-4.alone", _WHERE, "which is the more reliable, the passive or the active one",
             "not said", f"of {_SIZE} starts within {_SCATTER} rad (standard deviation) ten "
-            f"somersaults last {_percent(share['passive'])} passively, "
-            f"{_percent(share['active, 2/36 late'])} actively with {2000 * _EVERY:.0f} ms of "
+            f"somersaults last {percent(share['passive'])} passively, "
+            f"{percent(share['active, 2/36 late'])} actively with {2000 * EVERY:.0f} ms of "
             f"delay, "
-            f"{_percent(share['active, 8/36 late'])} with {8000 * _EVERY:.0f} ms",
+            f"{percent(share['active, 8/36 late'])} with {8000 * EVERY:.0f} ms",
             share["active, 2/36 late"] > share["passive"] > share["active, 8/36 late"],
             "Ours. Holds if a quick law does better than springs, and one as late as people are "
             "does worse.",
         ),
         statement(
             "sec7-4.damping", "§4.3.2, 7.4", "damped shoulders destroy the passive stability",
-            "destroy", f"{_percent(share['passive, damped'])} last ten somersaults, undamped "
-            f"{_percent(share['passive'])}",
+            "destroy", f"{percent(share['passive, damped'])} last ten somersaults, undamped "
+            f"{percent(share['passive'])}",
             share["passive, damped"] < 0.5 * share["passive"],
-            f"B_sh = {_DAMPING}.",
+            f"B_sh = {DAMPING}.",
         ),
         statement(
             "sec7-4.cheapest", _WHERE, "the cheapest feedback that makes damped shoulders stable",
-            "not said", f"a torque of −{-_HELD[0]:g} kg m² Ω² times the twist of each arm, which "
-            f"makes {_HELD[0] * RATE**2:.1f} N m/rad: stable with delays "
+            "not said", f"a torque of −{-HELD[0]:g} kg m² Ω² times the twist of each arm, which "
+            f"makes {HELD[0] * RATE**2:.1f} N m/rad: stable with delays "
             + " and ".join(_range(r) for r in damped[0]), bool(damped[0]),
             "Ours. The twist angle alone is sensed, by which no law holds arms without springs.",
         ),
@@ -168,9 +168,9 @@ def passive_and_active() -> Result:
         ),
         statement(
             "sec7-4.both", _WHERE, "both together", "not said",
-            f"{_percent(share['both, 2/36 late'])} last with {2000 * _EVERY:.0f} ms of delay, "
-            f"{_percent(share['both, 8/36 late'])} with {8000 * _EVERY:.0f} ms and "
-            f"{_percent(share['both, 12/36 late'])} with {12000 * _EVERY:.0f} ms",
+            f"{percent(share['both, 2/36 late'])} last with {2000 * EVERY:.0f} ms of delay, "
+            f"{percent(share['both, 8/36 late'])} with {8000 * EVERY:.0f} ms and "
+            f"{percent(share['both, 12/36 late'])} with {12000 * EVERY:.0f} ms",
             min(share["both, 8/36 late"], share["both, 12/36 late"]) > share["passive"],
             "Ours. Holds if even the late ones last more often than springs alone.",
         ),
@@ -178,7 +178,7 @@ def passive_and_active() -> Result:
     return Result(
         "The thesis compares an active and a passive layout in words.",
         f"The same {_SIZE} starts in Furrer's layout with the arms at {ARMS} rad, until a quarter "
-        f"twist or {_MANY} somersaults. Left: how many still go on. Right: growth of small "
+        f"twist or {MANY} somersaults. Left: how many still go on. Right: growth of small "
         "motions with the delay of the law.",
         claims,
         _draw(lives),
@@ -189,7 +189,7 @@ def passive_and_active() -> Result:
 
 def _as_spring() -> float:
     """How far the roots of a spring and of a torque by the arm's own angle are apart, Ω."""
-    sprung = _layout(_STIFFNESS)
+    sprung = _layout(STIFFNESS)
     arm = sprung.coordinates.index(MOVES)
     gain = -sprung.K_springs[arm, arm] / 2  # of each arm
     law = feedback(layout(), MOVES, "torque", {MOVES: gain}).roots(0.0)
@@ -207,7 +207,7 @@ def _shown() -> dict[str, Flight]:
     return {
         title: fly(
             MODEL, Takeoff(spin=RATE, tilt=0.03, twist=0.03, joints={"shoulder": cases[name]}),
-            5 * _SOMERSAULT, samples=361,
+            5 * SOMERSAULT, samples=361,
         )
         for title, name in names.items()
     }  # fmt: skip
@@ -217,7 +217,7 @@ def _share(data: xr.Dataset) -> float:
     return float(fraction(ended_by(data["ended"], "duration"), data["ended"])["fraction"])
 
 
-def _percent(share: float) -> str:
+def percent(share: float) -> str:
     return f"{100 * share:.0f} %"
 
 
@@ -233,7 +233,7 @@ def _table(lives: dict[str, xr.Dataset], share: dict[str, float]) -> Table:
     rows = []
     for name, data in lives.items():
         interval = fraction(ended_by(data["ended"], "duration"), data["ended"])
-        turns = data["time"].values / _SOMERSAULT
+        turns = data["time"].values / SOMERSAULT
         rows.append((
             name, f"{100 * share[name]:.0f}",
             f"{100 * float(interval['low']):.0f} to {100 * float(interval['high']):.0f}",
@@ -253,16 +253,16 @@ def _draw(lives: dict[str, xr.Dataset]) -> Figure:
         look.YELLOW,
     )  # fmt: skip
     for (name, data), color in zip(lives.items(), colors, strict=True):
-        turns = np.sort(data["time"].values / _SOMERSAULT)
+        turns = np.sort(data["time"].values / SOMERSAULT)
         left = 100 * (1 - np.arange(len(turns)) / len(turns))
         ax.step([0, *turns], [100, *left], where="post", color=color, label=name)
     ax.legend(fontsize=8, loc="center", bbox_to_anchor=(0.56, 0.33), edgecolor="none")
-    ax.set(xlabel="somersaults", ylabel="still without a quarter twist, %", xlim=(0, _MANY))
+    ax.set(xlabel="somersaults", ylabel="still without a quarter twist, %", xlim=(0, MANY))
     ax.set_title(f"{_SIZE} starts, tilt and twist ± {_SCATTER} rad")
     lags = np.linspace(0.005, 0.7, 70)
-    held = ((_HELD[0], look.GREEN, "both, −0.1", 0.56), (_HELD[1], look.PURPLE, "both, −0.2", 0.3))
-    for gain, color, words, at in held:
-        growth = [_held(gain).growth_rate(float(x * TURN)) for x in lags]
+    both = ((HELD[0], look.GREEN, "both, −0.1", 0.56), (HELD[1], look.PURPLE, "both, −0.2", 0.3))
+    for gain, color, words, at in both:
+        growth = [held(gain).growth_rate(float(x * TURN)) for x in lags]
         right.plot(lags, growth, color=color)
         look.label(right, at, growth[round(at / 0.01)] - 0.01, words, color, va="top")
     laws = ((QUICK, look.VERMILION, "quick"), (PATIENT, look.ORANGE, "patient"))
