@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections import deque
 from dataclasses import replace
 from itertools import pairwise
@@ -127,15 +128,63 @@ def test_a_pair_is_driven_as_in_a_mirror() -> None:
     )  # the right arm's angle is the left one's, negative
 
 
-def test_a_law_of_nothing_is_no_law() -> None:
-    springs = {"angle": 1.2, "stiffness": 5.0}
-    with_law = {"shoulder": so.JointTakeoff.torque_law(law="k * twist", gains={"k": 0}, **springs)}
-    without = {"shoulder": so.JointTakeoff.sprung(**springs)}
-    ends = [
-        so.fly("furrer", so.Takeoff(joints=joints, **TAKEOFF), 1.0, accuracy=1e-10).landing
-        for joints in (with_law, without)
-    ]
-    assert apart(ends[0].quaternion, ends[1].quaternion) < 1e-9
+SPRINGS = {"angle": 1.2, "K": 1.1, "hold": True}
+NOTHING = {
+    "gains of 0": ({"law": "k * twist + c * twist_rate", "gains": {"k": 0.0, "c": 0.0}}, SPRINGS),
+    "noise": ({"law": "k * twist", "gains": {"k": 0.0}, "noise": {"twist": 0.1}}, SPRINGS),
+    "a clipped 0": ({"law": "clip(k * wrap(twist), -1, 2)", "gains": {"k": 0.0}}, SPRINGS),
+    "a rate of 0": ({"motion": "rate_law", "law": "0 * 'left_shoulder'"}, {"angle": 1.2}),
+    "its angle": ({"motion": "angle_law", "law": "a", "gains": {"a": 1.2}}, {"angle": 1.2}),
+}
+
+
+@pytest.mark.parametrize("what", NOTHING)
+def test_a_law_of_nothing_is_no_law_bit_for_bit(what: str) -> None:
+    law, numbers = NOTHING[what]
+    joints = (
+        so.JointTakeoff(**{"motion": "torque_law", **law, **numbers}),
+        so.JointTakeoff.sprung(**numbers) if "K" in numbers else so.JointTakeoff.locked(**numbers),
+    )
+    one, two = (
+        so.fly("furrer", so.Takeoff(joints={"shoulder": joint}, **TAKEOFF), 1.0, samples=21)
+        for joint in joints
+    )
+    assert one.dataset.identical(two.dataset)
+
+
+@pytest.mark.parametrize(
+    "law", [{"law": "1e-9 * twist"}, {"law": "0", "rate": 0.1}, {"law": "time - time"}]
+)
+def test_a_law_that_could_do_something_has_its_ticks(law: dict) -> None:
+    """The last is 0 by arithmetic, and counts as nothing."""
+    motion = "rate_law" if "rate" in law else "torque_law"
+    joints = {"shoulder": so.JointTakeoff(motion, angle=1.2, **law)}
+    flight = so.fly("furrer", so.Takeoff(joints=joints, **TAKEOFF), 0.1)
+    nothing = law["law"] == "time - time"
+    assert all((plan.does.sensing is None) == nothing for plan in flight.start.plans)
+
+
+def test_gains_of_0_that_vary_have_their_ticks() -> None:
+    """Among gains the 0 agrees with the joint without a law to the accuracy; where only other
+    numbers vary, bit for bit, also on other workers."""
+    law = so.JointTakeoff.torque_law(law="k * twist", gains={"k": 0.0}, **SPRINGS)
+    with_law, without = (
+        so.flight.flights("furrer", so.Takeoff(joints={"shoulder": arms}, **TAKEOFF), 1.0)
+        for arms in (law, so.JointTakeoff.sprung(**SPRINGS))
+    )
+    gains = so.ensemble(
+        with_law, vary={"k": so.Vary(sets="joints.shoulder.gains.k", values=[0.0, -5.0])}
+    ).dataset
+    springs = {"K": so.Vary(sets="joints.shoulder.K", values=[1.1, 1.2])}
+    one, two = (so.ensemble(runs, vary=springs).dataset for runs in (with_law, without))
+    np.testing.assert_array_equal(one["twist"], two["twist"])
+    np.testing.assert_array_equal(one["steps"], two["steps"])
+    assert gains["twist"][0] == pytest.approx(float(two["twist"][0]), abs=1e-7)
+    assert gains["steps"][0] >= 50 > two["steps"][0]
+    varied = with_law.with_varied((("K", "left_shoulder"),))
+    sent = pickle.loads(pickle.dumps(varied))
+    assert sent.batch.joints == varied.batch.joints
+    assert all(plan.does.sensing is None for plan in sent.batch.joints)
 
 
 def test_what_waits_does_nothing_yet() -> None:

@@ -22,7 +22,7 @@ from somersault.dynamics import parameter_values
 from somersault.engine import MOST_STEPS, Solution
 from somersault.flight._course import Course
 from somersault.flight._plane import check_in_plane
-from somersault.flight._plans import numbers, plans, sound
+from somersault.flight._plans import numbers, plans, sound, without_idle_laws
 from somersault.flight._replay import ERRORS
 from somersault.flight._start import Start, Starts, in_si, start, starts
 from somersault.flight._system import System, system
@@ -43,7 +43,8 @@ class Batch:
     """A model and its takeoff, for `duration` seconds or `until` an event.
 
     `bodies` names numbers of the bodies that differ between the flights, `extremes` what is watched
-    besides the turns (None: not even those).
+    besides the turns (None: not even those), `differing` all numbers in which flights may differ
+    (None: any).
     """
 
     model: Model
@@ -52,6 +53,7 @@ class Batch:
     until: str | None = None
     bodies: tuple[str, ...] = ()
     extremes: tuple[str, ...] | None = None
+    differing: tuple[Name, ...] | None = None
 
     def __post_init__(self) -> None:
         check_in_plane(self.model, self.takeoff, self.until)
@@ -59,21 +61,29 @@ class Batch:
     @cached_property
     def joints(self) -> tuple[JointPlan, ...]:
         """What each joint does."""
-        return plans(self.model, self.takeoff)
+        return self._plainly(plans(self.model, self.takeoff))
 
-    def differing_in(self, bodies: tuple[str, ...]) -> Batch:
-        """The same flights, in which these numbers of bodies may differ.
+    def _plainly(self, joints: tuple[JointPlan, ...]) -> tuple[JointPlan, ...]:
+        if self.differing is None:
+            return joints
+        return without_idle_laws(self.model, joints, self.differing)
+
+    def differing_in(self, names: tuple[Name, ...], bodies: tuple[str, ...]) -> Batch:
+        """The same flights, which may differ in these numbers alone.
 
         Parameters
         ----------
+        names : tuple of tuple
         bodies : tuple of str
+            Those of them that are of bodies, as `Equations` has them.
 
         Returns
         -------
         Batch
         """
-        other = replace(self, bodies=bodies)
-        vars(other)["joints"] = self.joints  # which do the same; what is strange is noted once
+        other = replace(self, bodies=bodies, differing=names)
+        # They do the same, and what is strange is noted once.
+        vars(other)["joints"] = other._plainly(self.joints)
         return other
 
     @cached_property

@@ -147,7 +147,7 @@ class Maneuver(Variants):
     @property
     def batch(self) -> Batch:
         """The flights that share this one's equations."""
-        return Batch(self.model, self.takeoff, self.duration, self.until)
+        return Batch(self.model, self.takeoff, self.duration, self.until, differing=())
 
     def fly(self, **options: Any) -> Flight:
         """The flight.

@@ -149,7 +149,7 @@ class Flights:
         SomersaultError
             For what cannot fly.
         """
-        batch = self.batch.differing_in(body_names(names))
+        batch = self.batch.differing_in(names, body_names(names))
         _ = batch.system  # refuses what cannot fly, before anything is written
         return replace(self, batch=batch, varied=names)
 

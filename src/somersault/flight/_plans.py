@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,7 +11,9 @@ from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.dynamics import body_kind
 from somersault.flight._takeoff import Takeoff
+from somersault.flight._watch import quantities
 from somersault.flight.behaviours import (
+    ByLaw,
     JointPlan,
     JointTakeoff,
     Sprung,
@@ -31,6 +34,23 @@ def plans(model: Model, takeoff: Takeoff) -> tuple[JointPlan, ...]:
     if any(isinstance(p.does, Sprung) and (p.does.K, p.does.B) != (None, None) for p in settled):
         _check_spin(takeoff)
     return settled
+
+
+def without_idle_laws(
+    model: Model, settled: tuple[JointPlan, ...], varied: tuple[Name, ...]
+) -> tuple[JointPlan, ...]:
+    """The same without laws that command nothing, of flights that differ in some numbers.
+
+    A law's ticks end steps of the integration: without them a flight is that of the joint without
+    the law, bit for bit.
+    """
+    there, differing = frozenset([*quantities(model), "time"]), frozenset(varied)
+    return tuple(
+        replace(plan, does=plan.does.plainest(plan.joint, there, differing))
+        if isinstance(plan.does, ByLaw)
+        else plan
+        for plan in settled
+    )
 
 
 def by_joint(model: Model, joints: Mapping[str, JointTakeoff]) -> dict[str, JointTakeoff]:

@@ -14,7 +14,7 @@ from somersault._core.errors import SomersaultError
 from somersault._core.numbers import floats, number
 from somersault.engine import STATUS
 from somersault.flight._flight import Flight
-from somersault.flight._watch import ANGLES, RATES, VELOCITIES
+from somersault.flight._watch import ANGLES, RATES, VELOCITIES, quantities
 from somersault.model import Model
 from somersault.simulation import LANDING_ERROR, Endings, Variable
 
@@ -161,7 +161,7 @@ def landing_error(target: Mapping[str, float], landed: Mapping[str, Array | floa
 def check(report: Report, target: Mapping[str, float], model: Model) -> None:
     """SomersaultError for anything that cannot be reported of this model."""
     angles = [*ANGLES, *model.coordinates]
-    known = [*ANGLES, *RATES, *VELOCITIES, *model.coordinates, *(f"{s}_rate" for s in model.speeds)]
+    known = quantities(model)
     for where, names, there in (
         ("report.quantities", report.quantities, [*known, *TURNS, LANDING_ERROR]),
         ("report.extremes", report.extremes, known),

@@ -19,6 +19,7 @@ import numpy as np
 
 from somersault.attitude import SINGULAR, Axes, in_sequence, side
 from somersault.laws import wrapped
+from somersault.model import Model
 
 ANGLES = ("somersault", "tilt", "twist")
 RATES = tuple(f"{name}_rate" for name in ANGLES)
@@ -28,6 +29,12 @@ NEAREST = 0.02  # cos Θ: no nearer to it are steps shorter still
 _PAST = 3 * np.pi / 4  # rad: a half of the angles turns by π/2 to π in a step that passes it by
 
 Quantities = Callable[[Any, Any, Any], dict[str, Any]]
+
+
+def quantities(model: Model) -> list[str]:
+    """Names of all that is known of a model's motion at a moment, but for the time."""
+    rates = (f"{name}_rate" for name in model.speeds)
+    return [*ANGLES, *RATES, *VELOCITIES, *model.coordinates, *rates]
 
 
 def watched(extremes: tuple[str, ...]) -> list[str]:

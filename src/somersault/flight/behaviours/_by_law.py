@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
+import casadi as ca
 import numpy as np
 
 from somersault._core.array import Array
@@ -16,6 +17,7 @@ from somersault.flight.behaviours._law import Law
 from somersault.flight.behaviours._sensing import Senses, Sensing
 from somersault.laws import Formula, mirrored, mirrored_name
 from somersault.model import Joint, Model
+from somersault.simulation import Name
 
 
 @dataclass(frozen=True)
@@ -70,6 +72,35 @@ class ByLaw(Law, JointTakeoff):
 
     def parameters(self, joint: Joint) -> tuple[str, ...]:
         return (*super().parameters(joint), *self.tables, *self.bounds)
+
+    def plainest(self, joint: Joint, sensed: frozenset[str], varied: frozenset[Name]) -> Any:
+        """The plainest behaviour that does the same: one without a law, where the class has such
+        a one and the law commands nothing whatever is sensed.
+
+        Parameters
+        ----------
+        joint : Joint
+        sensed : frozenset of str
+            What there is to sense.
+        varied : frozenset of tuple
+            Names of the numbers in which flights differ.
+
+        Returns
+        -------
+        JointTakeoff
+        """
+        return self
+
+    def _always(self, sensed: frozenset[str], varied: frozenset[Name]) -> float | None:
+        """What the law commands whatever is sensed; None if that depends, or numbers of it vary."""
+        names, gains = Formula(self.law).names, set(self.gains)
+        if not names <= sensed | gains or gains & sensed:
+            return None  # it is refused when it is worked out
+        if self.noisy and ("takeoff", "noise") in varied:
+            return None
+        known = {name: ca.SX.sym(name) for name in names & sensed}
+        value = Formula(self.law).value({**known, **self.gains})
+        return float(value) if value.is_constant() else None
 
     # ----------------------------------------------------------------------------- at ticks
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
+import numpy as np
+
 from somersault._core.array import Array
 from somersault._core.numbers import MOST
 from somersault.flight.behaviours import _declared
@@ -12,9 +14,10 @@ from somersault.flight.behaviours._behaviour import Angle, JointTakeoff
 from somersault.flight.behaviours._by_law import ByLaw
 from somersault.flight.behaviours._here import Here
 from somersault.flight.behaviours._law import between, bounded
+from somersault.flight.behaviours._locked import Locked
 from somersault.flight.behaviours._moving import standing, takeoff_angle
 from somersault.model import Joint
-from somersault.simulation import Numbers
+from somersault.simulation import Name, Numbers
 
 
 @dataclass(frozen=True)
@@ -37,6 +40,12 @@ class Driven(ByLaw):
         plan = super().settled(joint)
         assert isinstance(plan, Driven)
         return replace(plan, angle=takeoff_angle(joint, plan.angle))
+
+    def plainest(self, joint: Joint, sensed: frozenset[str], varied: frozenset[Name]) -> Any:
+        if self.rate or varied & self.numbers(joint).keys():
+            return self
+        (stays,) = self.before(np.array([[self.angle]]), np.zeros((1, 1)))
+        return Locked(angle=self.angle) if self._always(sensed, varied) == stays else self
 
     def begin(self, joint: Joint, values: Numbers, count: int) -> tuple[Array, Array]:
         q, _ = standing(joint, values, count)
