@@ -13,14 +13,20 @@ from somersault.dynamics import body_kind
 from somersault.flight._takeoff import Takeoff
 from somersault.flight._watch import quantities
 from somersault.flight.behaviours import (
+    AngleLaw,
     ByLaw,
     JointPlan,
     JointTakeoff,
+    RateLaw,
     Sprung,
+    TorqueLaw,
     check_coupled,
 )
 from somersault.model import Joint, Model, sides
 from somersault.simulation import Name
+
+# Of classes derived from these a command of nothing may still do something.
+_COMMANDED = (AngleLaw, RateLaw, TorqueLaw)
 
 
 def plans(model: Model, takeoff: Takeoff) -> tuple[JointPlan, ...]:
@@ -47,7 +53,7 @@ def without_idle_laws(
     there, differing = frozenset([*quantities(model), "time"]), frozenset(varied)
     return tuple(
         replace(plan, does=plan.does.plainest(plan.joint, there, differing))
-        if isinstance(plan.does, ByLaw)
+        if isinstance(plan.does, ByLaw) and type(plan.does) in _COMMANDED
         else plan
         for plan in settled
     )
