@@ -1,10 +1,14 @@
-"""The examples take a model and a joint; one that there is not gets a sentence."""
+"""The examples take a model and a joint; one that there is not gets a sentence. Those of laws
+run."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+import somersault as so
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
@@ -25,3 +29,33 @@ def test_a_mistake_is_a_sentence(
     assert run.stderr.count("\n") == 1
     assert said in run.stderr
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.slow
+def test_four_layouts_are_shown(tmp_path: Path) -> None:
+    run = subprocess.run(
+        [sys.executable, str(EXAMPLES / "active_layout.py")],
+        capture_output=True, encoding="utf-8", cwd=tmp_path, check=True,
+    )  # fmt: skip
+    rigid, *held = (int(twist) for twist in re.findall(r"by (\d+)°", run.stdout))
+    assert rigid > 170
+    assert len(held) == 3
+    assert max(held) < 10
+    assert {file.name for file in tmp_path.iterdir()} == {"active_layout.mp4", "active_layout.html"}
+
+
+@pytest.mark.slow
+def test_a_gain_is_varied_and_an_ensemble_goes_on(tmp_path: Path) -> None:
+    command = [
+        sys.executable, "-m", "somersault", "ensemble", str(EXAMPLES / "active_scatter.toml"),
+        "--out", str(tmp_path / "scatter.zarr"),
+    ]  # fmt: skip
+    found = []
+    for _ in range(2):
+        subprocess.run(command, capture_output=True, check=True)
+        found.append(so.ensembles.Ensemble.open(tmp_path / "scatter.zarr"))
+    first, again = (one.dataset.load() for one in found)
+    assert first.identical(again)
+    lasting = found[0].fraction(ended="duration")["fraction"]
+    assert lasting.sel(gain=-16.0) > 0.8
+    assert lasting.sel(gain=0.0) < 0.3

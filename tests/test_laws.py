@@ -187,6 +187,22 @@ def test_gains_of_0_that_vary_have_their_ticks() -> None:
     assert all(plan.does.sensing is None for plan in sent.batch.joints)
 
 
+def test_arms_by_the_somersault_change_its_rate_by_their_inertia() -> None:
+    """Without tilt or twist the spin is the momentum over the inertia of the moment, whatever the
+    law does, and the somersault comes back to what was meant."""
+    law = "k * (somersault - 8 * time)"
+    joints = driven(law, gains={"k": 3.0}, most_rate=3.0, delay=0.04, every=0.02)
+    takeoff = so.Takeoff(spin=8.2, joints=joints)
+    flight = so.fly("furrer", takeoff, 2.0, samples=41)
+    angle = flight.joint_coordinates[:, 0]
+    inertia = [so.spin("furrer", 2, {"shoulder": a}).principal_inertias[1] for a in angle]
+    np.testing.assert_allclose(
+        np.array(inertia) * flight.angular_velocity[:, 1], inertia[0] * 8.2, rtol=1e-9
+    )
+    assert np.ptp(angle) > 0.1
+    np.testing.assert_allclose(flight.angles[:, 1:], 0.0, atol=1e-9)
+
+
 def test_what_waits_does_nothing_yet() -> None:
     """Until its reaction time is over the flight is that without the law."""
     late = driven("50 * sin(30 * time)", delay=0.5)
