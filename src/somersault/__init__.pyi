@@ -4,6 +4,9 @@ from . import (
     attitude as attitude,
 )
 from . import (
+    designs as designs,
+)
+from . import (
     dynamics as dynamics,
 )
 from . import (
@@ -50,6 +53,12 @@ from . import (
 )
 from ._core.errors import SomersaultError as SomersaultError
 from ._core.errors import SomersaultWarning as SomersaultWarning
+from .designs import (
+    Choose as Choose,
+)
+from .designs import (
+    design as design,
+)
 from .dynamics import Equations as Equations
 from .ensembles import (
     Ensemble as Ensemble,

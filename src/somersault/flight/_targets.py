@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from fnmatch import fnmatchcase
 
 from somersault._core.checks import shown, text
 from somersault._core.errors import SomersaultError
@@ -36,6 +37,8 @@ def targets(batch: Batch, path: str) -> tuple[Target, ...]:
         For a name that is not there.
     """
     text("the name of a number", path)
+    if "*" in path:
+        return _of_joints_alike(batch, path)
     if match := _TAKEOFF.match(path):
         return _of_takeoff(batch, path, *match.groups())
     if match := _REPLAY.match(path):
@@ -79,6 +82,27 @@ def _of_replay(batch: Batch, path: str, what: str, key: str | None) -> tuple[Tar
         has = f"it has {', '.join(there)}" if there else "it has no replay"
         raise SomersaultError(f"{path} is no number of this takeoff; {has}")
     return (Target(name, unit=declared(Replay)[what].unit),)
+
+
+def _of_joints_alike(batch: Batch, path: str) -> tuple[Target, ...]:
+    """The numbers of all joints whose names fit, where a mirrored joint has the same."""
+    match = _JOINT.match(path)
+    if not match:
+        raise SomersaultError(f"{path} has a * that is not in a joint's name; write it out")
+    pattern, what = match[1], match[2]
+    meant: list[Target] = []
+    for plan in batch.joints:
+        name = plan.joint.name
+        if not fnmatchcase(name, pattern) or (what, name) not in batch.values:
+            continue
+        if declared(plan.does)[what].image != "same":
+            raise SomersaultError(
+                f"{path} is another number for a joint's mirror image; name joints or pairs instead"
+            )
+        meant += _of_joint(batch, path, name, what, match[3])
+    if not meant:
+        raise SomersaultError(f"{path} fits no joint of {batch.model.name} that has such a number")
+    return tuple(meant)
 
 
 def _spelled(name: Name) -> str:

@@ -1,0 +1,74 @@
+"""What a design must keep to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from somersault._core.array import Array
+from somersault._core.checks import instance, text
+from somersault._core.errors import SomersaultError
+from somersault._core.numbers import number
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A bound on a quantity that is reported, as a joint's greatest torque.
+
+    Parameters
+    ----------
+    quantity : str
+        What is reported of each run, as "greatest_elbow_torque".
+    most : float
+        What |quantity| may be at most.
+    share : float
+        Of the runs, in how many at least; those that failed are left out.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import somersault as so
+    >>> strength = so.designs.Limit("torque", most=100.0)
+    >>> strength.beyond(np.array([[50.0, 120.0]]), np.zeros((1, 2), bool))
+    array([0.2])
+    """
+
+    quantity: str
+    most: float
+    share: float = 1.0
+
+    def checked(self) -> Limit:
+        """The same, if it makes sense.
+
+        Returns
+        -------
+        Limit
+
+        Raises
+        ------
+        SomersaultError
+            Unless its numbers are positive, and the share at most 1.
+        """
+        instance("a limit", self, Limit)
+        text("limit.quantity", self.quantity)
+        if number("limit.most", self.most) <= 0:
+            raise SomersaultError(f"limit.most must be positive, and is {self.most:g}")
+        if not 0 < number("limit.share", self.share) <= 1:
+            raise SomersaultError(f"limit.share must be above 0 and at most 1, not {self.share:g}")
+        return self
+
+    def beyond(self, values: Array, failed: Array) -> Array:
+        """By how much of the limit candidates are beyond it, 0 where they keep to it.
+
+        Parameters
+        ----------
+        values, failed : ndarray, (P, N)
+
+        Returns
+        -------
+        ndarray, (P,)
+        """
+        sizes = np.where(failed, 0.0, np.abs(values))
+        least = np.quantile(sizes, self.share, axis=-1, method="inverted_cdf")
+        return np.maximum(least / self.most - 1, 0.0)

@@ -1,0 +1,210 @@
+"""What a design came to: the best candidate, how sharp it is, and how it does on other starts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from somersault._core.array import Array
+from somersault._core.checks import whole_number
+from somersault._core.errors import SomersaultError
+from somersault.designs._candidates import CANDIDATE, Candidates
+from somersault.designs._trial import Outcome, Trial
+from somersault.simulation import ENDED
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_MOST_STEPS = 1_001
+CANDIDATES = ("first", "best")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Design:
+    """The best candidate of a search, as `design` returns it.
+
+    Attributes
+    ----------
+    trial : Trial
+        What was run for each candidate in the search.
+    held_out : Trial
+        The same from starts that the search has not seen.
+    table : ndarray, (2, chosen)
+        What the first and the best candidate choose.
+    parts : ndarray, (chosen,)
+        Where the best is between its bounds, 0 to 1.
+    generations : list of (ndarray, Outcome)
+        Candidates, as parts of their ways (P, chosen), and what they came to.
+    rows : mapping of str to ndarray, (2, N)
+        What is reported of both from the held-out starts.
+    """
+
+    trial: Trial
+    held_out: Trial
+    table: Array
+    parts: Array
+    generations: list[tuple[Array, Outcome]]
+    rows: dict[str, Array]
+
+    def __repr__(self) -> str:
+        chosen = ", ".join(f"{name} {value:.4g}" for name, value in self.best.items())
+        return f"<Design: {chosen}; {self.words}>"
+
+    @property
+    def words(self) -> str:
+        """The figure on held-out starts, in words."""
+        low, high = self.interval
+        return (
+            f"{self.trial.objective.words} {self.figure:.4g} ({low:.4g} to {high:.4g} with 95 % "
+            f"confidence), at first {self.first_figure:.4g}"
+        )
+
+    @property
+    def best(self) -> dict[str, float]:
+        """What is chosen, by name."""
+        return dict(zip(self.trial.chosen, self.table[1].tolist(), strict=True))
+
+    @property
+    def figures(self) -> Array:
+        """The objective's figure of the first and the best candidate on held-out starts, (2,)."""
+        return self.held_out.outcome(self.rows).figures
+
+    @property
+    def figure(self) -> float:
+        """The best candidate's figure on held-out starts."""
+        return float(self.figures[1])
+
+    @property
+    def first_figure(self) -> float:
+        """That of the candidate with which the search began."""
+        return float(self.figures[0])
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """The 95 % confidence interval of `figure`."""
+        failed = self.held_out.failed(self.rows[ENDED])
+        return self.trial.objective.interval(self.rows[self.trial.objective.quantity][1], failed[1])
+
+    @property
+    def simulation(self) -> Candidates:
+        """What is run, with what is chosen in it: for `so.ensemble`."""
+        trial = self.trial
+        return Candidates(trial.simulation, trial.chosen, trial.moves, self.table[1:])
+
+    @property
+    def numbers(self) -> dict[tuple[Any, ...], float]:
+        """The numbers of the simulation that the best candidate sets, by name."""
+        return {name: float(x[0]) for name, x in self.simulation.numbers.items()}
+
+    @cached_property
+    def dataset(self) -> xr.Dataset:
+        """What is reported of the first and the best candidate from held-out starts, labelled."""
+        import xarray as xr
+
+        planned = self.held_out.planned(self.table)
+        count = next(iter(self.rows.values())).shape[1]
+        varied = planned.varied(0, count)
+        known = self.trial.simulation.variables
+        data = {}
+        for name, x in self.rows.items():
+            of = known.get(name)
+            words = {} if of is None else {"units": of.unit, "long_name": of.words}
+            data[name] = ((CANDIDATE, "start"), x, words)
+        coordinates: dict[str, Any] = {CANDIDATE: list(CANDIDATES)}
+        coordinates |= {n: ("start", x) for n, x in varied.items() if n != CANDIDATE}
+        return xr.Dataset(data, coordinates, {"objective": self.trial.objective.words})
+
+    @property
+    def history(self) -> xr.Dataset:
+        """How the search went: the best figure so far, and what each generation came to."""
+        import xarray as xr
+
+        objective = self.trial.objective
+        figures = np.array([outcome.figures for _, outcome in self.generations])
+        costs = np.array([np.where(o.beyond > 0, np.inf, o.costs) for _, o in self.generations])
+        best = np.minimum.accumulate(costs.min(1))
+        parts = np.array([candidates for candidates, _ in self.generations])
+        values = np.stack(
+            [one.value(parts[..., k]) for k, one in enumerate(self.trial.chosen.values())], -1
+        )
+        along = ("generation", CANDIDATE)
+        return xr.Dataset(
+            {
+                "figure": (along, figures),
+                "best": ("generation", np.where(np.isinf(best), np.nan, best)
+                         * (-1 if objective.rises else 1)),
+                "chosen": ((*along, "quantity"), values),
+            },
+            {"quantity": list(self.trial.chosen)},
+            {"objective": objective.words},
+        )  # fmt: skip
+
+    @property
+    def worst_start(self) -> dict[str, float]:
+        """The held-out start from which the best candidate does worst, by what varies."""
+        objective = self.trial.objective
+        values = self.rows[objective.quantity][1].astype(float)
+        size = (
+            -values if objective.rises and getattr(objective, "largest", False) else np.abs(values)
+        )
+        size = np.where(self.held_out.failed(self.rows[ENDED])[1], np.inf, size)
+        at = int(np.nanargmax(size))
+        data = self.dataset
+        return {str(n): float(data[n][at]) for n in data.coords if n != CANDIDATE}
+
+    def around(self, steps: int = 9, reach: float = 0.2) -> xr.Dataset:
+        """How sharp the optimum is: the figure along each chosen quantity, the others staying.
+
+        Parameters
+        ----------
+        steps : int
+            How many values of each.
+        reach : float
+            How far to each side, as a part of its range.
+
+        Returns
+        -------
+        xarray.Dataset
+            `figure` and `value` over `quantity` and `step`, from held-out starts.
+        """
+        import xarray as xr
+
+        whole_number("steps", steps, 2, _MOST_STEPS)
+        if not 0 < reach <= 1:
+            raise SomersaultError(f"reach must be above 0 and at most 1, and is {reach:g}")
+        chosen = list(self.trial.chosen.values())
+        by = np.linspace(-reach, reach, steps)
+        parts = np.tile(self.parts, (len(chosen), steps, 1))
+        for k in range(len(chosen)):
+            parts[k, :, k] = np.clip(self.parts[k] + by, 0.0, 1.0)
+        flat = parts.reshape(-1, len(chosen))
+        table = np.stack([one.value(flat[:, k]) for k, one in enumerate(chosen)], 1)
+        figures = self.held_out.outcome(self.held_out.run(table)).figures.reshape(
+            len(chosen), steps
+        )
+        values = np.stack([one.value(parts[k, :, k]) for k, one in enumerate(chosen)])
+        along = ("quantity", "step")
+        return xr.Dataset(
+            {"figure": (along, figures.reshape(len(chosen), steps)), "value": (along, values)},
+            {"quantity": list(self.trial.chosen), "step": by},
+            {"objective": self.trial.objective.words},
+        )
+
+    def on(self, **changes: Any) -> Design:
+        """The same design judged on other starts.
+
+        Parameters
+        ----------
+        **changes
+            `vary`, `size`, `seed`, `sequence`, or another `simulation` with the same numbers, as
+            that of another angular momentum.
+
+        Returns
+        -------
+        Design
+        """
+        other = replace(self.held_out, **changes)
+        return replace(self, held_out=other, rows=other.run(self.table))
