@@ -31,6 +31,7 @@ _COMMANDS = {
     "fly": "One free flight, from a takeoff described in a TOML file.",
     "run": "A robot that runs on two legs, and somersaults on the way.",
     "ensemble": "Many flights that differ in what a TOML file varies; goes on if stopped.",
+    "design": "The numbers of a body or a motion that are most reliable over a scatter of starts.",
     "equations": "The equations of motion of a small model as LaTeX, of any model as C.",
     "reproduce": "Regenerate the figures and tables of the thesis, and check its every number.",
 }

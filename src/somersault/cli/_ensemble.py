@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from somersault.cli._cluster import add_cluster, security
 from somersault.cli._outputs import (
     PICTURE_ENDINGS,
     PICTURES,
@@ -51,19 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--out", type=Path, metavar="MAP.zarr",
         help="write the dataset: a Zarr store, resumed if it is there, or .nc (NetCDF)",
     )  # fmt: skip
-    parser.add_argument("--threads", type=int, metavar="N", help="threads (default: one per core)")
-    parser.add_argument(
-        "--workers", type=int, metavar="N", help="processes of dask.distributed on this machine"
-    )
-    parser.add_argument(
-        "--scheduler", metavar="ADDRESS", help="the dask scheduler whose workers fly"
-    )
-    for option, what in (
-        ("--tls-ca", "certificate of the authority that signed the scheduler's and the workers'"),
-        ("--tls-cert", "certificate to show a scheduler at tls://"),
-        ("--tls-key", "its key, unless that is in the same file"),
-    ):
-        parser.add_argument(option, type=Path, metavar="FILE", help=what)
+    add_cluster(parser)
     parser.add_argument("--chunk", type=int, metavar="N", help="flights in a chunk")
     parser.add_argument(
         "--plot", type=Path, metavar="FILE", help=f"draw what is reported first: {PICTURE_ENDINGS}"
@@ -92,7 +81,7 @@ def run(chosen: argparse.Namespace) -> None:
     spec = read_ensemble(chosen.spec)
     flown = carried_out(
         spec.plan, None if whole else chosen.out, chosen.chunk, chosen.threads, chosen.workers,
-        chosen.scheduler, _security(chosen), progress=sys.stderr.isatty(),
+        chosen.scheduler, security(chosen), progress=sys.stderr.isatty(),
     )  # fmt: skip
     writing, called = Writing(), spec.plan.simulation.endings.called
     record = {"model": spec.plan.simulation.name, "dimensions": spec.plan.dims}
@@ -118,23 +107,6 @@ def run(chosen: argparse.Namespace) -> None:
         record |= _ranking(flown.dataset, spec.quantities)
     print(json.dumps(record) if chosen.json else "\n".join(_page(record, called)))
     writing.finish()
-
-
-def _security(chosen: argparse.Namespace) -> Any:
-    """The certificates that are given; None leaves them to dask's configuration."""
-    from somersault._core.errors import SomersaultError
-    from somersault.ensembles import tls_files
-
-    if chosen.tls_ca is None and chosen.tls_cert is None and chosen.tls_key is None:
-        return None
-    if chosen.scheduler is None:
-        raise SomersaultError(
-            "--tls-ca, --tls-cert and --tls-key go with --scheduler; give its address, tls://…, "
-            "or leave them out"
-        )
-    if chosen.tls_ca is None or chosen.tls_cert is None:
-        raise SomersaultError("--tls-ca and --tls-cert go together; give both, and --tls-key")
-    return tls_files(chosen.tls_ca, chosen.tls_cert, chosen.tls_key)
 
 
 _MOST_RANKED = 100_000  # samples

@@ -8,5 +8,18 @@ from somersault.designs._objective import Objective
 from somersault.designs._quantile import Quantile
 from somersault.designs._result import Design
 from somersault.designs._share import Share
+from somersault.designs._spec import DesignSpec, parse_design, read_design
 
-__all__ = ["Choose", "Design", "Limit", "Mean", "Objective", "Quantile", "Share", "design"]
+__all__ = [
+    "Choose",
+    "Design",
+    "DesignSpec",
+    "Limit",
+    "Mean",
+    "Objective",
+    "Quantile",
+    "Share",
+    "design",
+    "parse_design",
+    "read_design",
+]

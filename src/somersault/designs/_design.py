@@ -24,7 +24,7 @@ from somersault.designs._result import Design
 from somersault.designs._search import search
 from somersault.designs._trial import Outcome, Trial
 from somersault.ensembles import Vary
-from somersault.flight import Flights, Maneuver, flights
+from somersault.flight import Maneuver, flights
 from somersault.simulation import Simulation
 
 if TYPE_CHECKING:
@@ -32,9 +32,9 @@ if TYPE_CHECKING:
 
     from distributed.security import Security
 
-_EVALUATIONS = 400
+EVALUATIONS = 400
 _MOST_EVALUATIONS = 1_000_000
-_SIZE, _HELD_OUT = 64, 1_024
+_SIZE, HELD_OUT = 64, 1_024
 _MOST_SIZE = 10_000_000
 
 
@@ -48,9 +48,9 @@ def design(
     size: int = _SIZE,
     seed: int = 0,
     sequence: str = "sobol",
-    evaluations: int = _EVALUATIONS,
+    evaluations: int = EVALUATIONS,
     population: int | None = None,
-    held_out: int = _HELD_OUT,
+    held_out: int = HELD_OUT,
     out: str | Path | None = None,
     threads: int | None = None,
     workers: int | None = None,
@@ -122,11 +122,11 @@ def design(
     >>> 0.4 < found.best["stiffness"] < 2.0
     True
     """
-    simulation = _simulation(what, objective)
     if not isinstance(objective, Objective):
         raise SomersaultError(
             f"objective is {shown(objective)}; give designs.Share, designs.Mean or designs.Quantile"
         )
+    simulation = _simulation(what, objective)
     chosen = {
         name: instance(f"choose.{name}", one, Choose).checked(name)
         for name, one in by_name("choose", choose).items()
@@ -192,16 +192,15 @@ def _table(chosen: Mapping[str, Choose], parts: Array) -> Array:
     return np.stack(columns, 1)
 
 
-def _simulation(what: Any, objective: Any) -> Simulation:
+def _simulation(what: Any, objective: Objective) -> Simulation:
     if isinstance(what, Maneuver):
-        options = {
-            name: value
-            for name in ("accuracy", "until", "steps")
-            if (value := getattr(what, name, None)) is not None
-        }
-        report = [objective.quantity] if isinstance(objective, Objective) else ["twist"]
-        made: Flights = flights(what.model, what.takeoff, what.duration, report=report, **options)
-        return made
+        own = {name: getattr(what, name, None) for name in ("accuracy", "until", "steps")}
+        options: dict[str, Any] = {name: x for name, x in own.items() if x is not None}
+        plain = flights(what.model, what.takeoff, what.duration, **options)
+        if objective.quantity in plain.variables:
+            return plain
+        report = [objective.quantity]
+        return flights(what.model, what.takeoff, what.duration, report=report, **options)
     if not isinstance(what, Simulation):
         raise SomersaultError(
             f"{shown(what)} is nothing that can be run; give a Maneuver, or flight.flights(…)"

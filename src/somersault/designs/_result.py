@@ -17,6 +17,7 @@ from somersault.simulation import ENDED
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
 
 _MOST_STEPS = 1_001
 CANDIDATES = ("first", "best")
@@ -192,6 +193,22 @@ class Design:
             {"quantity": list(self.trial.chosen), "step": by},
             {"objective": self.trial.objective.words},
         )
+
+    def plot(self, steps: int = 9, reach: float = 0.2) -> Figure:
+        """A picture: how the search went, and how sharp the optimum is along each quantity.
+
+        Parameters
+        ----------
+        steps, reach
+            As for `around`.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        from somersault.designs._plot import plot
+
+        return plot(self, steps, reach)
 
     def on(self, **changes: Any) -> Design:
         """The same design judged on other starts.

@@ -1,0 +1,53 @@
+"""A picture of a design: how the search went, and how sharp the optimum is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from somersault.view import style as look
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from somersault.designs._result import Design
+
+_COLUMNS = 3
+
+
+def plot(design: Design, steps: int, reach: float) -> Figure:
+    """Left the best figure so far; then the figure along each chosen quantity, the others staying.
+
+    The horizontal line and its band are the best candidate's figure on held-out starts and its
+    confidence interval.
+    """
+    with look.style():
+        history, around = design.history, design.around(steps, reach)
+        names = [str(name) for name in around["quantity"].values]
+        columns = min(_COLUMNS, 1 + len(names))
+        rows = -(-(1 + len(names)) // columns)
+        picture = look.figure(3.1 * columns, 2.7 * rows)
+        axes = np.ravel(picture.subplots(rows, columns, squeeze=False))
+        judged = np.arange(1, history.sizes["generation"] + 1) * history.sizes["candidate"]
+        axes[0].plot(judged, history["best"], color=look.BLUE)
+        axes[0].set(xlabel="candidates", title="best so far, starts of the search")
+        for ax, name in zip(axes[1:], names, strict=False):
+            row = around.sel(quantity=name)
+            ax.plot(row["value"], row["figure"], "o-", ms=3, color=look.BLUE)
+            ax.axvline(design.best[name], color=look.GREY, lw=1, ls="--")
+            ax.set(xlabel=_with_unit(name, design.trial.chosen[name].unit))
+            if design.trial.chosen[name].scale == "log":
+                ax.set_xscale("log")
+        low, high = design.interval
+        for ax in axes[: 1 + len(names)]:
+            ax.axhspan(low, high, color=look.ORANGE, alpha=0.25, lw=0)
+            ax.axhline(design.figure, color=look.ORANGE, lw=1)
+        axes[0].set_ylabel(design.trial.objective.words)
+        for ax in axes[1 + len(names) :]:
+            ax.set_visible(False)
+        return picture
+
+
+def _with_unit(name: str, unit: str) -> str:
+    return f"{name} ({unit})" if unit else name
