@@ -277,7 +277,7 @@ def _draw() -> Figure:
     level = 100 * _share(without.values)
     left.axhline(level, color=look.BLACK, lw=1.2, ls="--", label="no law")
     names = [_words(error).replace(" ", "\n") for error in _ERRORS]
-    left.set_xticks(range(len(names)), names)
+    left.set_xticks(range(len(names)), names, fontsize=8)
     left.set(ylim=(0, 128), ylabel=f"starts that land below {rudi.SMALL:g}, %")
     left.set_yticks(range(0, 101, 20))
     left.legend(ncols=2, loc="upper center", edgecolor="none", fontsize=8)
@@ -299,6 +299,6 @@ def _draw() -> Figure:
         right.step(errors[landed], percent[landed], where="post", color=color, label=words)
     right.axvline(rudi.SMALL, color=look.GREY, lw=0.8, ls=":")
     right.set(xlim=(0, 0.4), ylim=(0, 102), xlabel="landing error e", ylabel="starts below it, %")
-    right.legend(fontsize=8, loc="lower right", edgecolor="none")
+    right.legend(fontsize=7.5, loc="lower right", edgecolor="none", handlelength=1.2)
     right.set_title(f"{_HELD_OUT} other starts")
     return picture
