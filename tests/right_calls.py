@@ -660,6 +660,10 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
         },
     ),
     "flight.Maneuver.changed": lambda: (maneuver().changed, {"duration": 0.2, "accuracy": 1e-8}),
+    "flight.Maneuver.replayed": lambda: (
+        maneuver().replayed,
+        {"replay": so.Replay(law="1 + k * twist_error", gains={"k": 0.5})},
+    ),
     "flight.Maneuver.compliant": lambda: (
         maneuver().compliant,
         {
