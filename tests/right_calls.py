@@ -193,6 +193,12 @@ def _takeoff(**given: Any) -> Any:
     return so.fly("furrer", so.Takeoff(**given), 0.02, samples=2)
 
 
+def _replayed(**given: Any) -> Any:
+    left = so.JointTakeoff.prescribed(times=[0.0, 0.1], angles=[1.0, 0.5])
+    takeoff = so.Takeoff(spin=5.0, joints={"left_shoulder": left}, replay=so.Replay(**given))
+    return so.fly("furrer", takeoff, 0.02, samples=2)
+
+
 def _joint_takeoff(make: Callable[..., Any]) -> Call:
     def call(**given: Any) -> Any:
         return so.fly("furrer", so.Takeoff(spin=5.0, joints={"left_shoulder": make(**given)}), 0.02)
@@ -654,6 +660,10 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
         },
     ),
     "flight.Maneuver.changed": lambda: (maneuver().changed, {"duration": 0.2, "accuracy": 1e-8}),
+    "flight.Maneuver.replayed": lambda: (
+        maneuver().replayed,
+        {"replay": so.Replay(law="1 + k * twist_error", gains={"k": 0.5})},
+    ),
     "flight.Maneuver.compliant": lambda: (
         maneuver().compliant,
         {
@@ -689,6 +699,22 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     "flight.Report": lambda: (
         _report,
         {"quantities": ("tilt",), "extremes": ("tilt",), "history": ("tilt",), "samples": 3},
+    ),
+    "flight.Replay": lambda: (
+        _replayed,
+        {
+            "law": "1 + k * twist_error",
+            "gains": {"k": 0.5},
+            "noise": {"twist_error": 0.01},
+            "every": 0.01,
+            "delay": 0.01,
+            "rate": 1.1,
+            "least": 0.5,
+            "most": 1.5,
+            "most_acceleration": 20.0,
+            "nominal_angles": THREE,
+            "nominal_momentum": THREE,
+        },
     ),
     "flight.Report.times": lambda: (
         so.Report(samples=3, history=("tilt",)).times,

@@ -367,7 +367,7 @@ def test_the_tape_is_the_nominal_bodys() -> None:
     at, torques = np.array([[0.05]]), []
     for mass in (model.bodies[1].mass, 20.0):
         begun = batch.begun({**batch.values, ("bodies.torso.mass",): mass})
-        p = begun.course.parameters(at)[:, 0]
+        p = begun.course.parameters(at, begun.rows[:, None])[:, 0]
         assert p[0, symbols.layout.changing] == mass
         torques.append(np.array(acting(np.concatenate([begun.rows, at, p], 1)[0])).ravel())
     light, heavy = torques

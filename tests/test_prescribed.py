@@ -8,8 +8,9 @@ for, and pinocchio's inverse dynamics along the way.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import factorial
 
 import mujoco
@@ -76,13 +77,25 @@ class Arrival:
     u: np.ndarray
 
 
-def stepped(flight: so.Flight, torques: Torques, seconds: float, step: float) -> Arrival:
+def moments(step: float, knots: Sequence[float] = ()) -> np.ndarray:
+    """Where steps begin and end: no longer than `step`, and none across a knot."""
+    corners = [0.0, *sorted(k for k in knots if 0 < k < SECONDS), SECONDS]
+    gaps = [(a, b, int(np.ceil((b - a) / step - 1e-9))) for a, b in pairwise(corners)]
+    return np.unique(np.concatenate([np.linspace(a, b, n + 1) for a, b, n in gaps]))
+
+
+def halved(at: np.ndarray) -> np.ndarray:
+    """The same with the middle of each step."""
+    return np.sort(np.concatenate([at, 0.5 * (at[1:] + at[:-1])]))
+
+
+def stepped(flight: so.Flight, torques: Torques, at: np.ndarray) -> Arrival:
     """MuJoCo's Runge–Kutta flight from the same start, with joint torques that it asks for.
 
     They are asked for at every stage, with the stage's time, coordinates and speeds: torques held
     over a step would leave a method of the first order.
     """
-    m = to_mujoco(flight.system.model, step)
+    m = to_mujoco(flight.system.model, at[1])
     m.opt.enableflags = 0
     q_at, v_at = mujoco_addresses(flight.system.model, m)
     d = mujoco.MjData(m)
@@ -95,16 +108,19 @@ def stepped(flight: so.Flight, torques: Torques, seconds: float, step: float) ->
 
     mujoco.set_mjcb_passive(passive)
     try:
-        mujoco.mj_step(m, d, nstep=round(seconds / step))
+        for d.time, m.opt.timestep in zip(at, np.diff(at), strict=False):
+            mujoco.mj_step(m, d)
     finally:
         mujoco.set_mjcb_passive(None)
     return Arrival(d.qpos[3:7].copy(), d.qvel[3:6].copy(), d.qpos[q_at].copy(), d.qvel[v_at].copy())
 
 
-def assert_arrives(flight: so.Flight, torques: Torques, within: float, step: float) -> None:
+def assert_arrives(
+    flight: so.Flight, torques: Torques, within: float, step: float, knots: Sequence[float] = ()
+) -> None:
     """Ours is MuJoCo's, whose own error, by halving its step, is a tenth of that or less."""
-    coarse = stepped(flight, torques, SECONDS, step)
-    fine = stepped(flight, torques, SECONDS, step / 2)
+    at = moments(step, knots)
+    coarse, fine = (stepped(flight, torques, x) for x in (at, halved(at)))
     own = max(apart(coarse.quaternion, fine.quaternion), float(np.abs(coarse.q - fine.q).max()))
     assert own / 15 < 0.1 * within  # of order four
     q, u = (rows[-1] for rows in flight._joints)

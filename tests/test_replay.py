@@ -392,3 +392,15 @@ def test_what_cannot_be_replayed_is_refused_in_a_sentence() -> None:
     with pytest.raises(so.SomersaultError, match="recorded from"):
         so.fly("furrer", fast, 0.6)
     assert so.fly("furrer", fast, 0.5).ended == "duration"
+
+
+def test_errors_stay_those_against_the_maneuver_that_was_replayed() -> None:
+    """Whatever becomes of its takeoff; a takeoff that has the replay itself is its own nominal."""
+    law = so.Replay(law="1 + k * somersault_error", gains={"k": 1.0})
+    pinned = arms().replayed(law).takeoff
+    assert pinned.replay.nominal_angles == (0.0, 0.02, 0.0)
+    for spin, bends in ((8.0, False), (9.0, True)):
+        faster = so.fly("furrer", replace(pinned, spin=spin), 0.5)
+        assert (np.ptp(faster.phase_rate) > 0.01) == bends
+    alone = so.fly("furrer", replace(pinned, spin=9.0, replay=law), 0.5)
+    assert np.ptp(alone.phase_rate) < 1e-9

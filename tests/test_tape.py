@@ -19,7 +19,8 @@ WRAP = so.named_pose("gymnast", "wrap")
 def taped(soft: so.Takeoff, times: np.ndarray) -> np.ndarray:
     """Torques (time, joints) of a compliant takeoff's tape."""
     batch = Batch(GYMNAST, soft, SECONDS)
-    p = batch.begun().course.parameters(times[None])[0]
+    states = np.empty((1, len(times), batch.system.layout.state))  # which do not matter here
+    p = batch.begun().course.parameters(times[None], states)[0]
     own = p[:, PATH * len(batch.joints) : batch.system.layout.changing]
     s = times - own[:, 0]
     rows = own[:, 1:].reshape(len(times), -1, TAPE_DEGREE + 1)

@@ -69,6 +69,7 @@ class Vary:
         named "takeoff.tilt", "takeoff.angular_momentum.2", "joints.NAME.angle" (or what else the
         joint's behaviour has: rate, stiffness, damping, rest, pretension …; a pair by its common
         name), "joints.NAME.times" for all of them or "joints.NAME.times.2" for one (from 1),
+        "joints.NAME.gains.k" and "replay.gains.k" (or another gain, noise or bound of a law),
         "bodies.NAME.mass" (moments of inertia go along with it), "bodies.NAME.com.1",
         "bodies.NAME.position.3".
     values : sequence of float or mapping

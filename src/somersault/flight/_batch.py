@@ -23,7 +23,7 @@ from somersault.engine import MOST_STEPS, Solution
 from somersault.flight._course import Course
 from somersault.flight._plane import check_in_plane
 from somersault.flight._plans import numbers, plans, sound, without_idle_laws
-from somersault.flight._replay import ERRORS
+from somersault.flight._playback import ERRORS, Playback
 from somersault.flight._start import Start, Starts, in_si, start, starts
 from somersault.flight._system import System, system
 from somersault.flight._takeoff import Takeoff
@@ -89,16 +89,22 @@ class Batch:
     @cached_property
     def system(self) -> System:
         """The equations, shared with every batch that has the same."""
-        taped, replay = self.takeoff.tape is not None, self.takeoff.replay
+        taped, playback = self.takeoff.tape is not None, self.playback
         return system(
             self.model, kinds(self.joints), self.until, self.bodies, self.extremes, taped,
-            None if replay is None else replay.kind(),
+            None if playback is None else playback.kind(),
         )  # fmt: skip
+
+    @cached_property
+    def playback(self) -> Playback | None:
+        """What its takeoff's replay does in flight."""
+        return None if self.takeoff.replay is None else Playback(self.takeoff.replay)
 
     @cached_property
     def values(self) -> Mapping[Name, float | Array]:
         """The numbers of the takeoff, and of the bodies that may differ."""
         values = numbers(self.takeoff, self.joints)
+        values |= {} if self.playback is None else self.playback.numbers
         of_model = parameter_values(self.model)
         for name in self.bodies:
             values[(name,)] = of_model[name]
@@ -160,8 +166,8 @@ class Batch:
         -------
         ndarray of bool, (count,)
         """
-        good, replay = sound(self.joints, values, count), self.takeoff.replay
-        return good if replay is None else good & replay.sound(values, count)
+        good, playback = sound(self.joints, values, count), self.playback
+        return good if playback is None else good & playback.sound(values, count)
 
     def begun(self, values: Numbers | None = None, count: int = 1) -> Begun:
         """The flights at takeoff.
@@ -212,10 +218,10 @@ class Begun:
     @property
     def _perceived(self) -> Path | None:
         """What a replay's law compares with of the nominal flight, if it does."""
-        replay = self.batch.takeoff.replay
-        if replay is None or not replay.errors:
+        playback = self.batch.playback
+        if playback is None or not playback.errors:
             return None
-        kept = Sensed(tuple(ERRORS[name] for name in replay.errors))
+        kept = Sensed(tuple(ERRORS[name] for name in playback.errors))
         return self._recorded(self.batch.perceived, kept).path(list(range(len(kept.names))))
 
     def _recorded(self, nominal: Batch, kept: Kept) -> Tape:
@@ -239,12 +245,12 @@ class Begun:
     def _sensed(self) -> Array:
         """What is carried of the body before the first tick: its angles, the noise's state, and
         the replay."""
-        angles, values, replay = self.starts.angles, self.starts.values, self.batch.takeoff.replay
+        angles, values, playback = self.starts.angles, self.starts.values, self.batch.playback
         parts = [angles]
         if self.batch.system.layout.noise:
             parts.append(seeds(np.broadcast_to(values["takeoff", "noise"], len(angles))))
-        if replay is not None:
-            parts.append(replay.at_takeoff(values, len(angles)))
+        if playback is not None:
+            parts.append(playback.at_takeoff(values, len(angles)))
         return np.concatenate(parts, 1)
 
     def solve(self, samples: Array, accuracy: float, most_steps: int = MOST_STEPS) -> Solution:

@@ -20,7 +20,7 @@ from somersault._core.numbers import number
 from somersault.attitude import matrix_from_quaternion
 from somersault.dynamics import Equations
 from somersault.flight._batch import Batch
-from somersault.flight._replay import pinned
+from somersault.flight._replay import Replay
 from somersault.flight._start import Start
 from somersault.flight._takeoff import Takeoff, require_takeoff
 from somersault.flight.behaviours import (
@@ -195,9 +195,17 @@ def off_nominal(
         raise SomersaultError("a takeoff that is off by angles needs angles, not a quaternion")
     given = {"somersault": somersault, "tilt": tilt, "twist": twist}
     off = {name: getattr(begun, name) + number(name, by) for name, by in given.items()}
-    nominal = [getattr(begun, name) for name in given]
-    assert begun.angular_momentum is not None
-    return replace(begun, replay=pinned(begun.replay, nominal, begun.angular_momentum), **off)
+    replay = None if begun.replay is None else against(model, begun, begun.replay)
+    return replace(begun, replay=replay, **off)
+
+
+def against(model: str | Model, takeoff: Takeoff, replay: Replay) -> Replay:
+    """A replay whose nominal flight is that of a takeoff given by angles, unless it has one."""
+    if replay.nominal_angles is not None or takeoff.quaternion is not None:
+        return replay
+    momentum = with_momentum(model, takeoff).angular_momentum
+    angles = (takeoff.somersault, takeoff.tilt, takeoff.twist)
+    return replace(replay, nominal_angles=angles, nominal_momentum=momentum)
 
 
 def _begun(model: Model, takeoff: Takeoff) -> Start:

@@ -55,8 +55,9 @@ class Course:
         """Parameters that stay as they are, (N, …)."""
         model = self._system.model
         parts = [begun.bodies]
-        if self._system.symbols.replay is not None:
-            parts.append(self._system.symbols.replay.lasting(begun.values, len(begun.q)))
+        playback = self._system.symbols.playback
+        if playback is not None:
+            parts.append(playback.lasting(begun.values, len(begun.q)))
         for plan in self._plans:
             where = model.coordinate_slice(plan.joint.name)
             parts.append(plan.does.lasting(plan.joint, begun.values, begun.q[:, where]))

@@ -289,7 +289,7 @@ class Flight(Filmed):
             "phase_rate": ("time", self.phase_rate, {"units": "1"}),
         }
         return {
-            **(replayed if self.system.symbols.replay is not None else {}),
+            **(replayed if self.system.symbols.playback is not None else {}),
             "somersault": ("time", angles[:, 0], rad),
             "tilt": ("time", angles[:, 1], rad),
             "twist": ("time", angles[:, 2], rad),

@@ -42,7 +42,7 @@ class HeldSymbols(Symbols):
         self, model: Model, kinds: tuple[JointTakeoff, ...], gravity: Numbers,
         stops: Mapping[str, Prop], until: Until,
     ) -> None:  # fmt: skip
-        super().__init__(model, kinds, bodies=(), tape=False, replay=None)
+        super().__init__(model, kinds, bodies=(), tape=False, playback=None)
         self._gravity, self._stops, self._until = list(gravity), stops, until
 
     @cached_property

@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from somersault._core.errors import SomersaultError
-from somersault.flight._replay import Replay
+from somersault.flight._playback import Playback
 from somersault.flight.behaviours import JointTakeoff
 from somersault.laws import STATE as NOISE
 from somersault.model import Joint, Model
@@ -68,12 +68,12 @@ class Layout:
 
 def layout(
     model: Model, kinds: tuple[JointTakeoff, ...], bodies: tuple[str, ...], tape: bool,
-    replay: Replay | None,
+    playback: Playback | None,
 ) -> Layout:  # fmt: skip
     """The layout of a model's flight whose joints are of these kinds.
 
     `bodies` names the numbers of bodies that are parameters; with `tape` the torques of the nominal
-    motion act at the joints whose `nominal` behaviour is another. `replay` is of a kind.
+    motion act at the joints whose `nominal` behaviour is another. `playback` is of a kind.
     """
     pairs = list(zip(model.joints, kinds, strict=True))
     moving = [joint for joint, kind in pairs if kind.in_state]
@@ -81,22 +81,22 @@ def layout(
     q = (ATTITUDE if bound else ATTITUDE + RATE) if model.free else 0
     u = q + sum(joint.coordinates for joint in moving)
     moved = u + sum(joint.speeds for joint in moving)
-    every = _every(pairs, replay)
+    every = _every(pairs, playback)
     sensed = range(moved, moved + (ANGLES if every else 0))
     noisy = any(kind.sensing and kind.sensing.noisy for kind in kinds)
-    noisy = noisy or (replay is not None and replay.noisy)
+    noisy = noisy or (playback is not None and playback.replay.noisy)
     noise = range(sensed.stop, sensed.stop + (NOISE if noisy else 0))
-    replayed = range(noise.stop, noise.stop + (replay.carried if replay else 0))
+    replayed = range(noise.stop, noise.stop + (playback.carried if playback else 0))
     carried = replayed.stop
     path, origin = 0, PATH * sum(kind.path_count for kind in kinds)
     taped = origin + 1
     played = sum(is_taped(kind) for kind in kinds) if tape else 0
     sensed_nominal = origin + (1 + TAPED * played if tape else 0)
-    errors = len(replay.errors) if replay else 0
+    errors = len(playback.errors) if playback else 0
     nominal = range(sensed_nominal, sensed_nominal + (1 + TAPED * errors if errors else 0))
     changing = nominal.stop
     lasting = changing + len(bodies)
-    of_replay = range(lasting, lasting + (len(replay.parameters) if replay else 0))
+    of_replay = range(lasting, lasting + (len(playback.parameters) if playback else 0))
     lasting = of_replay.stop
     slots = []
     for joint, kind in pairs:
@@ -120,9 +120,9 @@ def layout(
     )  # fmt: skip
 
 
-def _every(pairs: list[tuple[Joint, JointTakeoff]], replay: Replay | None) -> float | None:
+def _every(pairs: list[tuple[Joint, JointTakeoff]], playback: Playback | None) -> float | None:
     """The time between the ticks of all laws, s; SomersaultError where they differ."""
-    every = None if replay is None else replay.every
+    every = None if playback is None else playback.replay.every
     for joint, kind in pairs:
         if kind.sensing is None:
             continue

@@ -89,8 +89,6 @@ def numbers(takeoff: Takeoff, settled: tuple[JointPlan, ...]) -> dict[Name, floa
     laws = [takeoff.replay, *(plan.does.sensing for plan in settled)]
     if any(law is not None and law.noisy for law in laws):
         result["takeoff", "noise"] = takeoff.noise
-    if takeoff.replay is not None:
-        result |= takeoff.replay.numbers
     for plan in settled:
         result |= plan.does.numbers(plan.joint)
     return result

@@ -6,33 +6,12 @@ of pre-recorded actions based on perceived errors".
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass
 
-import numpy as np
-
-from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import MOST, numbers
-from somersault.engine import CLOCK, clock_at
-from somersault.flight._watch import ANGLES, RATES
-from somersault.flight.behaviours import (
-    Law,
-    Senses,
-    between,
-    bounded,
-    checked_all,
-    declared,
-    quantity,
-    side_by_side,
-)
-from somersault.laws import Formula
-from somersault.simulation import Name, Numbers
-
-ERRORS = {f"{name}_error": name for name in (*ANGLES, *RATES)}
-"""What is sensed of the body, less what it was in the nominal flight at the same phase."""
-_BOUNDS = ("least", "most", "most_acceleration")
+from somersault.flight.behaviours import Law, checked_all, checked_times, quantity
 
 
 @dataclass(frozen=True)
@@ -70,8 +49,8 @@ class Replay(Law):
         Somersault, tilt and twist (rad) at takeoff of the nominal flight.
     nominal_momentum : sequence of float, (3,), optional
         Its angular momentum (inertial axes, kg m²/s). Without these two the nominal flight is that
-        of the takeoff itself, in an ensemble that of the takeoff of which numbers are varied;
-        `off_nominal` keeps the one that there was.
+        of the takeoff itself, in an ensemble that of the takeoff of which numbers are varied.
+        `Maneuver.replayed` and `off_nominal` give them.
 
     Raises
     ------
@@ -101,7 +80,7 @@ class Replay(Law):
                 changes[name] = tuple(numbers(f"replay: {name}", given, 3).tolist())
         for name, value in changes.items():
             object.__setattr__(self, name, value)
-        for name, value in self.checked_times("replay").items():
+        for name, value in checked_times(self, "replay").items():
             object.__setattr__(self, name, value)
         if (self.nominal_angles is None) != (self.nominal_momentum is None):
             raise SomersaultError(
@@ -112,127 +91,3 @@ class Replay(Law):
                 f"replay begins at the rate {self.rate:g} and is bounded by least = {self.least:g} "
                 f"and most = {self.most:g}; give 0 < least <= rate <= most"
             )
-
-    def kind(self) -> Replay:
-        """The same without its numbers: flights of one kind share their equations.
-
-        Returns
-        -------
-        Replay
-        """
-        return Replay(law=self.law, every=self.every, delay=self.delay, **self.empty_tables)
-
-    @property
-    def errors(self) -> tuple[str, ...]:
-        """The errors that its law has."""
-        return tuple(name for name in ERRORS if name in Formula(self.law).names)
-
-    # --------------------------------------------------------------------------- numbers
-
-    @property
-    def numbers(self) -> dict[Name, float | Array]:
-        """Those that may differ between flights, by names such as ("replay", "gains", "k")."""
-        result: dict[Name, float | Array] = {}
-        for name in declared(self):
-            value = getattr(self, name)
-            if isinstance(value, Mapping):
-                result |= {("replay", name, key): x for key, x in value.items()}
-            else:
-                result["replay", name] = value
-        return result
-
-    @property
-    def parameters(self) -> tuple[str, ...]:
-        """Names of its numbers in equations."""
-        return (*self.tables, *_BOUNDS)
-
-    def lasting(self, values: Numbers, count: int) -> Array:
-        """Numbers of `parameters`.
-
-        Parameters
-        ----------
-        values : mapping of tuple to float or ndarray, (count,)
-            The numbers of the flights.
-        count : int
-            How many flights.
-
-        Returns
-        -------
-        ndarray, (count, parameters)
-        """
-        names: list[Name] = [("replay", *name.split(".", 1)) for name in self.parameters]
-        return side_by_side(values, names, count)
-
-    def sound(self, values: Numbers, count: int) -> Array:
-        """Whether the numbers of each flight are such as could be asked for by themselves.
-
-        Parameters
-        ----------
-        values, count
-            As for `lasting`.
-
-        Returns
-        -------
-        ndarray of bool, (count,)
-        """
-        names: list[Name] = [("replay", name) for name in ("rate", *_BOUNDS)]
-        rate, least, most, acceleration = side_by_side(values, names, count).T
-        return (least > 0) & (least <= rate) & (rate <= most) & (acceleration >= 0)
-
-    # ----------------------------------------------------------------------------- ticks
-
-    @property
-    def carried(self) -> int:
-        """How many numbers it carries from tick to tick: the phase as a clock, and the commands
-        that wait."""
-        return CLOCK + self.waits
-
-    def at_takeoff(self, values: Numbers, count: int) -> Array:
-        """What it carries before the first tick.
-
-        Parameters
-        ----------
-        values, count
-            As for `lasting`.
-
-        Returns
-        -------
-        ndarray, (count, carried)
-        """
-        first = np.zeros((count, self.carried))
-        rate = np.broadcast_to(values["replay", "rate"], count)
-        first[:, 2] = rate
-        first[:, CLOCK:] = rate[:, None]
-        return first
-
-    def tick(
-        self, carried: Sequence[Any], time: Any, numbers: Mapping[str, Any], senses: Senses
-    ) -> list[Any]:
-        """What it carries from a tick on.
-
-        Parameters
-        ----------
-        carried : sequence of casadi.SX, (carried,)
-        time : casadi.SX
-        numbers : mapping of str to casadi.SX
-            Of its `parameters`.
-        senses : Senses
-
-        Returns
-        -------
-        list of casadi.SX, (carried,)
-        """
-        command = self.command("replay", numbers, senses)
-        wanted, *waiting = [*carried[CLOCK:], command]
-        phase, rate, _ = clock_at(carried[:CLOCK], time)
-        by = between(wanted, numbers["least"], numbers["most"]) - rate
-        return [time, phase, rate, bounded(by / self.every, numbers["most_acceleration"]), *waiting]
-
-
-def pinned(
-    replay: Replay | None, angles: Sequence[float], momentum: Sequence[float]
-) -> Replay | None:
-    """A replay whose nominal flight takes off so, unless it has one."""
-    if replay is None or replay.nominal_angles is not None:
-        return replay
-    return replace(replay, nominal_angles=tuple(angles), nominal_momentum=tuple(momentum))

@@ -24,7 +24,7 @@ from somersault.dynamics.vectors import Vec, matvec, solve_symmetric, vsub
 from somersault.engine import CLOCK, clock_at
 from somersault.flight._layout import ATTITUDE, RATE, TAPED, Layout, Slot, layout
 from somersault.flight._plane import turning
-from somersault.flight._replay import ERRORS, Replay
+from somersault.flight._playback import ERRORS, Playback
 from somersault.flight._watch import VELOCITIES, named, nearest
 from somersault.flight.behaviours import Coupled, Here, JointTakeoff, Known, Senses
 from somersault.laws import Noise
@@ -37,10 +37,10 @@ class Symbols:
 
     def __init__(
         self, model: Model, kinds: tuple[JointTakeoff, ...], bodies: tuple[str, ...], tape: bool,
-        replay: Replay | None,
+        playback: Playback | None,
     ) -> None:  # fmt: skip
-        self.model, self.bodies, self.replay = model, bodies, replay
-        self.layout: Layout = layout(model, kinds, bodies, tape, replay)
+        self.model, self.bodies, self.playback = model, bodies, playback
+        self.layout: Layout = layout(model, kinds, bodies, tape, playback)
         self.y = ca.SX.sym("y", self.layout.state)
         self.t = ca.SX.sym("t")
         self.p = ca.SX.sym("p", self.layout.parameters)
@@ -61,7 +61,7 @@ class Symbols:
     @cached_property
     def clock(self) -> tuple[Any, Any, Any]:
         """The phase, at which paths and tape are, its rate and its acceleration."""
-        if self.replay is None:
+        if self.playback is None:
             return self.t, 1.0, 0.0
         return clock_at(self._at(self.y, self.layout.replay[:CLOCK]), self.t)
 
@@ -240,15 +240,15 @@ class Symbols:
         angles, known = self.sensed
         noise = Noise(self._at(self.y, where.noise))
         known["time"] = self.t
-        if self.replay is not None:
+        if self.playback is not None:
             known["phase"], known["phase_rate"], _ = self.clock
         senses = Senses(known, noise.normal)
         own: list[Any] = []
-        if self.replay is not None:
-            names = self.replay.parameters
+        if self.playback is not None:
+            names = self.playback.parameters
             numbers = dict(zip(names, self._at(self.p, where.replay_numbers), strict=True))
             perceived = Senses({**known, **self._errors(known)}, noise.normal)
-            own += self.replay.tick(self._at(self.y, where.replay), self.t, numbers, perceived)
+            own += self.playback.tick(self._at(self.y, where.replay), self.t, numbers, perceived)
         for slot in where.slots:
             if slot.kind.sensing is not None:
                 own += slot.kind.sensing.tick(self.here[slot.joint.name], senses)
@@ -257,11 +257,11 @@ class Symbols:
     def _errors(self, known: Mapping[str, Any]) -> dict[str, Any]:
         """What is sensed less what it was in the nominal flight at the same phase; of those that
         the replay's law does not have, the names."""
-        assert self.replay is not None
+        assert self.playback is not None
         result = dict.fromkeys(ERRORS, 0.0)
-        if self.replay.errors:
+        if self.playback.errors:
             since, *powers = self._at(self.p, self.layout.nominal)
-            for k, name in enumerate(self.replay.errors):
+            for k, name in enumerate(self.playback.errors):
                 own = powers[TAPED * k : TAPED * (k + 1)]
                 nominal, _, _ = polynomial(self.clock[0] - since, own)
                 result[name] = known[ERRORS[name]] - nominal

@@ -19,7 +19,7 @@ from somersault._core.errors import SomersaultError
 from somersault.dynamics import Equations
 from somersault.engine import Integrator, Kernel
 from somersault.flight._layout import Layout
-from somersault.flight._replay import Replay
+from somersault.flight._playback import Playback
 from somersault.flight._symbols import Symbols
 from somersault.flight._watch import longest, values, watch
 from somersault.flight.behaviours import JointTakeoff
@@ -34,13 +34,13 @@ def system(
     bodies: tuple[str, ...] = (),
     extremes: tuple[str, ...] | None = None,
     tape: bool = False,
-    replay: Replay | None = None,
+    playback: Playback | None = None,
 ) -> System:
     """The system of a model in flight whose joints are of these kinds, compiled once.
 
     `bodies` names numbers of the bodies that differ between flights, as `Equations` does. With
-    `tape` the torques of the nominal motion act at compliant joints. `replay` is the kind of law by
-    which paths and tape are played.
+    `tape` the torques of the nominal motion act at compliant joints. `playback` is the kind of
+    law by which paths and tape are played.
     """
     if not model.free:
         raise SomersaultError(f"{model.name} has a fixed base, so it cannot fly; {FREE_IT}")
@@ -50,12 +50,12 @@ def system(
                 f"joint {joint.name} is on no path, so there is no motor tape to replay; make "
                 "it compliant, prescribed or locked, or leave the takeoff's tape out"
             )
-    if replay is not None and not (tape or any(kind.path_count for kind in kinds)):
+    if playback is not None and not (tape or any(kind.path_count for kind in kinds)):
         raise SomersaultError(
             "nothing in this takeoff goes along a path, so there is nothing to replay; "
             "prescribe joints, or leave its replay out"
         )
-    return System(Symbols(model, kinds, bodies, tape, replay), event is not None, extremes)
+    return System(Symbols(model, kinds, bodies, tape, playback), event is not None, extremes)
 
 
 @lru_cache(maxsize=64)

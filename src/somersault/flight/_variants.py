@@ -9,7 +9,8 @@ from typing import Any, Self
 from somersault._core.checks import instance
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
-from somersault.flight._compliance import compliant, off_nominal, with_momentum
+from somersault.flight._compliance import against, compliant, off_nominal, with_momentum
+from somersault.flight._replay import Replay
 from somersault.flight._takeoff import Takeoff
 from somersault.flight.behaviours import JointTakeoff
 from somersault.model import Model
@@ -96,6 +97,31 @@ class Variants:
             self.model, self.takeoff, natural_frequency, damping_ratio, pose=pose, **options
         )
         return self.changed(takeoff=takeoff)
+
+    def replayed(self, replay: Replay) -> Self:
+        """The same with paths and motor tape played at a rate by a law.
+
+        Parameters
+        ----------
+        replay : Replay
+            Unless it has another nominal flight, its errors are against this maneuver's, whatever
+            becomes of the takeoff; it has to be given by angles.
+
+        Returns
+        -------
+        Maneuver
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> law = so.Replay(law="1 + k * twist_error", gains={"k": -0.5}, delay=0.1)
+        >>> twist = so.arm_tilt().compliant(30.0, pose="wrap").replayed(law)
+        >>> twist.off_nominal(tilt=-0.05).fly().ended
+        'duration'
+        """
+        instance("replay", replay, Replay)
+        kept = against(self.model, self.takeoff, replay)
+        return self.changed(takeoff=dataclasses.replace(self.takeoff, replay=kept))
 
     def from_takeoff(self, takeoff: Takeoff) -> Self:
         """The same moves from another takeoff.

@@ -10,7 +10,7 @@ from somersault.flight.behaviours._coupled import Coupled, check_coupled, leader
 from somersault.flight.behaviours._declared import checked_all, declared, quantity, side_by_side
 from somersault.flight.behaviours._free import Free
 from somersault.flight.behaviours._here import Here, Known
-from somersault.flight.behaviours._law import Law, between, bounded
+from somersault.flight.behaviours._law import Law, between, bounded, checked_times, commanded
 from somersault.flight.behaviours._locked import Locked
 from somersault.flight.behaviours._moving import Moving, Stopped
 from somersault.flight.behaviours._plan import JointPlan, kinds
@@ -52,6 +52,8 @@ __all__ = [
     "bounded",
     "check_coupled",
     "checked_all",
+    "checked_times",
+    "commanded",
     "declared",
     "kinds",
     "leaders",

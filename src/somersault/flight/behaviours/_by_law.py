@@ -13,7 +13,7 @@ from somersault._core.errors import SomersaultError
 from somersault.flight.behaviours import _declared
 from somersault.flight.behaviours._behaviour import JointTakeoff
 from somersault.flight.behaviours._here import Here
-from somersault.flight.behaviours._law import Law
+from somersault.flight.behaviours._law import Law, checked_times, commanded
 from somersault.flight.behaviours._sensing import Senses, Sensing
 from somersault.laws import Formula, mirrored, mirrored_name
 from somersault.model import Joint, Model
@@ -33,7 +33,7 @@ class ByLaw(Law, JointTakeoff):
             raise SomersaultError(f"{where} is a {joint.kind}, which takes no law; give it hinges")
         plan = super().settled(joint)
         assert isinstance(plan, ByLaw)
-        return replace(plan, **plan.checked_times(where))
+        return replace(plan, **checked_times(plan, where))
 
     def mirrored(self, model: Model, name: str, factor: float, offset: float) -> Any:
         plan = super().mirrored(model, name, factor, offset)
@@ -156,7 +156,7 @@ class ByLaw(Law, JointTakeoff):
         -------
         list
         """
-        command = self.command(f"joint {here.joint.name}", here.numbers, senses)
+        command = commanded(self, f"joint {here.joint.name}", here.numbers, senses)
         waiting = [*here.carried[1:], command]
         return [self.acted_on(here, waiting[0]), *waiting[1:]]
 

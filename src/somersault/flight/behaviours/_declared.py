@@ -141,8 +141,25 @@ def declared(kind: Any) -> dict[str, Quantity]:
 
 
 def checked_all(where: str, does: Any, joint: Joint | None = None) -> dict[str, Any]:
-    """The declared fields of something as floats; SomersaultError, naming the first that is none,
-    or is less than it can be."""
+    """The declared fields of something as floats.
+
+    Parameters
+    ----------
+    where : str
+        What a message says has them.
+    does : JointTakeoff or Law
+    joint : Joint, optional
+        Whose they are.
+
+    Returns
+    -------
+    dict of str to float, tuple or Table
+
+    Raises
+    ------
+    SomersaultError
+        Naming the first that is none, or is less than it can be.
+    """
     changes: dict[str, Any] = {}
     defaults = {one.name: one.default for one in fields(does)}
     for name, what in declared(does).items():

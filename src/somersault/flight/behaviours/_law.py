@@ -38,40 +38,6 @@ class Law:
     every: float = field(default=0.02, kw_only=True, metadata={"structure": True})
     delay: float = field(default=0.0, kw_only=True, metadata={"structure": True})
 
-    def checked_times(self, where: str) -> dict[str, Any]:
-        """Its times as floats, by their names, after a look at the whole of it.
-
-        Parameters
-        ----------
-        where : str
-            What a message says has the law.
-
-        Returns
-        -------
-        dict of str to float
-
-        Raises
-        ------
-        SomersaultError
-            For what is no such law.
-        """
-        every, delay = (number(f"{where}: {n}", getattr(self, n)) for n in ("every", "delay"))
-        _check_times(where, every, delay)
-        names = Formula(self.law).names
-        idle = sorted(set(self.gains) - names)
-        if idle:
-            raise SomersaultError(
-                f"{where} has the gain {idle[0]}, which its law {self.law!r} does not have; "
-                "correct one of them"
-            )
-        silent = sorted(set(self.noise) - names)
-        if silent:
-            raise SomersaultError(
-                f"{where} senses {silent[0]} with noise, but its law {self.law!r} does not have "
-                "it; leave it out"
-            )
-        return {"every": every, "delay": delay}
-
     @property
     def tables(self) -> tuple[str, ...]:
         """Names of its gains and noise among the parameters of equations: "gains.k" …"""
@@ -94,46 +60,104 @@ class Law:
         """Whether it senses with noise."""
         return bool(self.noise)
 
-    def command(self, where: str, numbers: Mapping[str, Any], senses: Senses) -> Any:
-        """What it says of what is sensed now.
 
-        Parameters
-        ----------
-        where : str
-            What a message says has the law.
-        numbers : mapping of str to casadi.SX
-            Of its `tables`.
-        senses : Senses
+def checked_times(law: Law, where: str) -> dict[str, Any]:
+    """The times of a law as floats, after a look at the whole of it.
 
-        Returns
-        -------
-        casadi.SX
+    Parameters
+    ----------
+    law : Law
+        Its gains and noise are numbers.
+    where : str
+        What a message says has the law.
 
-        Raises
-        ------
-        SomersaultError
-            For a gain that has the name of something that is sensed.
-        """
-        known = dict(senses.known)
-        for name in self.gains:
-            if name in known:
-                raise SomersaultError(
-                    f"{where} has a gain {name}, which is also something that is sensed; give the "
-                    "gain another name"
-                )
-            known[name] = numbers[f"gains.{name}"]
-        for name in self.noise:
-            known[name] = known[name] + numbers[f"noise.{name}"] * senses.normal()
-        return Formula(self.law).value(known)
+    Returns
+    -------
+    dict of str to float
+        By their names.
+
+    Raises
+    ------
+    SomersaultError
+        For what is no such law.
+    """
+    every, delay = (number(f"{where}: {n}", getattr(law, n)) for n in ("every", "delay"))
+    _check_times(where, every, delay)
+    names = Formula(law.law).names
+    idle = sorted(set(law.gains) - names)
+    if idle:
+        raise SomersaultError(
+            f"{where} has the gain {idle[0]}, which its law {law.law!r} does not have; "
+            "correct one of them"
+        )
+    silent = sorted(set(law.noise) - names)
+    if silent:
+        raise SomersaultError(
+            f"{where} senses {silent[0]} with noise, but its law {law.law!r} does not have "
+            "it; leave it out"
+        )
+    return {"every": every, "delay": delay}
+
+
+def commanded(law: Law, where: str, numbers: Mapping[str, Any], senses: Senses) -> Any:
+    """What a law says of what is sensed now.
+
+    Parameters
+    ----------
+    law : Law
+    where : str
+        What a message says has the law.
+    numbers : mapping of str to casadi.SX
+        Of its `tables`.
+    senses : Senses
+
+    Returns
+    -------
+    casadi.SX
+
+    Raises
+    ------
+    SomersaultError
+        For a gain that has the name of something that is sensed.
+    """
+    known = dict(senses.known)
+    for name in law.gains:
+        if name in known:
+            raise SomersaultError(
+                f"{where} has a gain {name}, which is also something that is sensed; give the "
+                "gain another name"
+            )
+        known[name] = numbers[f"gains.{name}"]
+    for name in law.noise:
+        known[name] = known[name] + numbers[f"noise.{name}"] * senses.normal()
+    return Formula(law.law).value(known)
 
 
 def bounded(value: Any, most: Any) -> Any:
-    """A number that is not beyond ±most; one that is none stays so."""
+    """A number that is not beyond ±most; one that is none stays so.
+
+    Parameters
+    ----------
+    value, most : casadi.SX or float
+
+    Returns
+    -------
+    casadi.SX
+    """
     return between(value, -most, most)
 
 
 def between(value: Any, low: Any, high: Any) -> Any:
-    """A number that is not below `low` nor above `high`; one that is none stays so."""
+    """A number that is not below `low` nor above `high`; one that is none stays so.
+
+    Parameters
+    ----------
+    value, low, high : casadi.SX or float
+
+    Returns
+    -------
+    casadi.SX
+    """
     return ca.if_else(value > high, high, ca.if_else(value < low, low, value))
 
 

@@ -1,4 +1,5 @@
-"""Chapter 7, the conclusions: passive and active control of one somersault, side by side."""
+"""Chapter 7, the conclusions: passive and active control of one somersault side by side, and a
+replay rate that errors adjust."""
 
 from functools import partial
 
@@ -11,6 +12,7 @@ CHAPTER = Chapter(
     "Conclusions",
     (
         _entry("sec7-2", "§7.2: the somersault too", "_somersault_control.somersault_control"),
+        _entry("sec7-3", "§7.3: the replay rate of the rudi", "_replay.replay_rate"),
         _entry("sec7-4", "§7.4: passive, active, and both", "_together.passive_and_active"),
         _entry("sec7-4-maps", "§7.4: how late, how far off, how stiff", "_maps.maps"),
     ),
