@@ -280,3 +280,28 @@ def test_a_mass_that_is_added_to() -> None:
     )  # fmt: skip
     for name in BODY:
         np.testing.assert_allclose(added.dataset[name].values, whole.dataset[name].values, **NEAR)
+
+
+def test_torques_are_those_of_a_flight_sprung_compliant_and_prescribed() -> None:
+    moves = {"left_shoulder": [(0.1, 1.3), (0.5, 0.4)]}
+    on_path = so.Maneuver.moves("furrer", moves, so.Takeoff(spin=SPIN, tilt=0.05), duration=0.6)
+    sprung = JointTakeoff.sprung(angle=-1.2, K=1.2, B=0.1, hold=True)
+    both = replace(on_path.takeoff, joints={**on_path.takeoff.joints, "right_shoulder": sprung})
+    soft = so.compliant("furrer", on_path.takeoff, 30.0, pose=0.0)
+    soft = so.off_nominal("furrer", soft, tilt=0.05)
+    for takeoff in (both, soft):
+        names = [f"{name}_torque" for name in SHOULDERS]
+        report = so.Report(names, extremes=names, history=names, samples=61)
+        many = so.flight.flights("furrer", takeoff, 0.6, report=report, accuracy=1e-10)
+        data = so.ensemble(many).dataset.isel(sample=0)
+        alone = so.fly("furrer", takeoff, 0.6, samples=61, accuracy=1e-10).joint_torques
+        fine = so.fly("furrer", takeoff, 0.6, samples=4001, accuracy=1e-10).joint_torques
+        for name, speed in zip(names, SHOULDERS, strict=True):
+            own = alone.sel(joint_speed=speed).values
+            np.testing.assert_allclose(data[f"{name}_history"], own, atol=1e-6)
+            np.testing.assert_allclose(data[name], own[-1], atol=1e-6)
+            size = float(np.abs(own).max())
+            whole = fine.sel(joint_speed=speed)
+            for which, pick in (("least", whole.min()), ("greatest", whole.max())):
+                np.testing.assert_allclose(data[f"{which}_{name}"], float(pick), atol=5e-3 * size)
+            assert data[name].attrs["units"] == "N m"

@@ -19,7 +19,8 @@ class Limit:
     Parameters
     ----------
     quantity : str
-        What is reported of each run, as "greatest_elbow_torque".
+        What is reported of each run, as "greatest_left_elbow_torque"; a * stands for anything, so
+        that "*elbow_torque" means both extremes of both.
     most : float
         What |quantity| may be at most.
     share : float

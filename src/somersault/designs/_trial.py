@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fnmatch
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -86,7 +87,13 @@ class Trial:
 
     @cached_property
     def _read(self) -> set[str]:
-        return {self.objective.quantity, ENDED, *(limit.quantity for limit in self.limits)}
+        return {self.objective.quantity, ENDED, *(n for row in self._limited for n in row)}
+
+    @cached_property
+    def _limited(self) -> list[list[str]]:
+        """What each limit is for, of all that is reported."""
+        there = [n for n, v in self.simulation.variables.items() if not v.over_time]
+        return [fnmatch.filter(there, limit.quantity) or [limit.quantity] for limit in self.limits]
 
     def failed(self, ended: Array) -> Array:
         """Which runs failed."""
@@ -98,8 +105,8 @@ class Trial:
         failed = self.failed(rows[ENDED])
         values = rows[self.objective.quantity]
         beyond = np.zeros(len(values))
-        for limit in self.limits:
-            beyond += limit.beyond(rows[limit.quantity], failed)
+        for limit, names in zip(self.limits, self._limited, strict=True):
+            beyond += sum(limit.beyond(rows[name], failed) for name in names)
         return Outcome(
             self.objective.figures(values, failed), self.objective.costs(values, failed), beyond
         )

@@ -14,7 +14,7 @@ from somersault._core.errors import SomersaultError
 from somersault._core.numbers import floats, number
 from somersault.engine import STATUS
 from somersault.flight._flight import Flight
-from somersault.flight._watch import ANGLES, RATES, VELOCITIES, quantities
+from somersault.flight._watch import ANGLES, RATES, VELOCITIES, quantities, torques
 from somersault.model import Model
 from somersault.simulation import LANDING_ERROR, Endings, Variable
 
@@ -35,8 +35,9 @@ class Report:
     quantities : tuple of str
         At the end: "somersault", "tilt", "twist" (rad, unwrapped) and their rates ("tilt_rate" …),
         "angular_velocity_1" (2, 3; body axes), joint coordinates by name and their rates
-        ("NAME_rate"); "somersaults" and "twists", turns since takeoff; and "landing_error", the
-        error against the landing that is aimed at.
+        ("NAME_rate"), what acts at joints, as `Flight.joint_torques` has it ("NAME_torque");
+        "somersaults" and "twists", turns since takeoff; and "landing_error", the error against the
+        landing that is aimed at.
     extremes : tuple of str
         Of which of them (turns and landing error excepted) the least and the greatest on the way
         are reported.
@@ -161,7 +162,7 @@ def landing_error(target: Mapping[str, float], landed: Mapping[str, Array | floa
 def check(report: Report, target: Mapping[str, float], model: Model) -> None:
     """SomersaultError for anything that cannot be reported of this model."""
     angles = [*ANGLES, *model.coordinates]
-    known = quantities(model)
+    known = [*quantities(model), *torques(model)]
     for where, names, there in (
         ("report.quantities", report.quantities, [*known, *TURNS, LANDING_ERROR]),
         ("report.extremes", report.extremes, known),
@@ -217,4 +218,6 @@ def _units(model: Model) -> dict[str, str]:
         speeds = model.speeds[model.speed_slice(joint.name)]
         units |= dict.fromkeys(coordinates, unit)
         units |= dict.fromkeys([f"{name}_rate" for name in speeds], rate)
+        torque = "N" if joint.kind == "slide" else "N m"
+        units |= dict.fromkeys([f"{name}_torque" for name in speeds], torque)
     return units

@@ -7,7 +7,7 @@ differ only in numbers share one compiled right-hand side.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -21,7 +21,7 @@ from somersault.engine import Integrator, Kernel
 from somersault.flight._layout import Layout
 from somersault.flight._playback import Playback
 from somersault.flight._symbols import Symbols
-from somersault.flight._watch import longest, values, watch
+from somersault.flight._watch import Quantities, longest, torques, values, watch
 from somersault.flight.behaviours import JointTakeoff
 from somersault.model import FREE_IT, Model
 
@@ -62,7 +62,8 @@ def system(
 def reader(names: tuple[str, ...], system: System) -> Kernel:
     """The quantities of (angles, state, time, parameters), compiled; once for a system."""
     layout, axes = system.layout, system.model.axes
-    return Kernel(values(names, system.quantities, layout.state, layout.parameters, axes))
+    quantities = system.known(names)
+    return Kernel(values(names, quantities, layout.state, layout.parameters, axes))
 
 
 class System:
@@ -106,7 +107,7 @@ class System:
         return Integrator(
             slope,
             gauge,
-            watch(self.extremes, self.quantities, where.state, where.parameters, axes),
+            watch(self.extremes, self.known(self.extremes), where.state, where.parameters, axes),
             self._function("longest", longest(s.quaternion, s.omega, axes)),
             where.changing,
             tick,
@@ -144,6 +145,19 @@ class System:
         values = self._reading(ca.vertcat(y, t, p))
         return {name: values[k] for k, name in enumerate(self.symbols.quantities)}
 
+    def known(self, names: Iterable[str]) -> Quantities:
+        """`quantities`, with what acts at the joints if some of the names are of that."""
+        return self._with_torques if set(names) & set(torques(self.model)) else self.quantities
+
+    def _with_torques(self, y: Any, t: Any, p: Any) -> dict[str, Any]:
+        acting = self._acting(ca.vertcat(y, t, p))
+        named = {name: acting[6 + k] for k, name in enumerate(torques(self.model))}
+        return {**named, **self.quantities(y, t, p)}
+
+    @cached_property
+    def _acting(self) -> ca.Function:
+        return self._function("acting", self.symbols.inverse)
+
     @cached_property
     def _reading(self) -> ca.Function:
         s = self.symbols
@@ -159,4 +173,4 @@ class System:
     def loads(self) -> Kernel:
         """Moment and force on the base (both zero in free flight), then joint torques, of (state,
         time, parameters)."""
-        return Kernel(self._function("loads", self.symbols.inverse))
+        return Kernel(self._acting)

@@ -37,6 +37,11 @@ def quantities(model: Model) -> list[str]:
     return [*ANGLES, *RATES, *VELOCITIES, *model.coordinates, *rates]
 
 
+def torques(model: Model) -> dict[str, str]:
+    """Names of what acts at joints, and the joint speeds at which it does."""
+    return {f"{name}_torque": name for name in model.speeds}
+
+
 def watched(extremes: tuple[str, ...]) -> list[str]:
     """Names of the watched rows: the angles, then the least and greatest of each quantity."""
     return [*ANGLES, *(f"{which}_{name}" for name in extremes for which in ("least", "greatest"))]
