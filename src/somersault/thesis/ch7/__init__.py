@@ -15,5 +15,8 @@ CHAPTER = Chapter(
         _entry("sec7-3", "§7.3: the replay rate of the rudi", "_replay.replay_rate"),
         _entry("sec7-4", "§7.4: passive, active, and both", "_together.passive_and_active"),
         _entry("sec7-4-maps", "§7.4: how late, how far off, how stiff", "_maps.maps"),
+        _entry(
+            "sec7-5-rudi", "§7.5: the rudi's compliance, chosen", "_rudi_design.rudi_design", True
+        ),
     ),
 )
