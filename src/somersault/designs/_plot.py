@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,21 +10,24 @@ import numpy as np
 from somersault.view import style as look
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.figure import Figure
 
-    from somersault.designs._result import Design
+    from somersault.designs._choose import Choose
 
 _COLUMNS = 3
 
 
-def plot(design: Design, steps: int, reach: float) -> Figure:
+def plot(
+    history: xr.Dataset, around: xr.Dataset, chosen: Mapping[str, Choose],
+    best: Mapping[str, float], figure: float, interval: tuple[float, float],
+) -> Figure:  # fmt: skip
     """Left the best figure so far; then the figure along each chosen quantity, the others staying.
 
-    The horizontal line and its band are the best candidate's figure on held-out starts and its
+    The horizontal line and its band are the best candidate's `figure` on held-out starts and its
     confidence interval.
     """
     with look.style():
-        history, around = design.history, design.around(steps, reach)
         names = [str(name) for name in around["quantity"].values]
         columns = min(_COLUMNS, 1 + len(names))
         rows = -(-(1 + len(names)) // columns)
@@ -35,15 +39,14 @@ def plot(design: Design, steps: int, reach: float) -> Figure:
         for ax, name in zip(axes[1:], names, strict=False):
             row = around.sel(quantity=name)
             ax.plot(row["value"], row["figure"], "o-", ms=3, color=look.BLUE)
-            ax.axvline(design.best[name], color=look.GREY, lw=1, ls="--")
-            ax.set(xlabel=_with_unit(name, design.trial.chosen[name].unit))
-            if design.trial.chosen[name].scale == "log":
+            ax.axvline(best[name], color=look.GREY, lw=1, ls="--")
+            ax.set(xlabel=_with_unit(name, chosen[name].unit))
+            if chosen[name].scale == "log":
                 ax.set_xscale("log")
-        low, high = design.interval
         for ax in axes[: 1 + len(names)]:
-            ax.axhspan(low, high, color=look.ORANGE, alpha=0.25, lw=0)
-            ax.axhline(design.figure, color=look.ORANGE, lw=1)
-        axes[0].set_ylabel(design.trial.objective.words)
+            ax.axhspan(*interval, color=look.ORANGE, alpha=0.25, lw=0)
+            ax.axhline(figure, color=look.ORANGE, lw=1)
+        axes[0].set_ylabel(history.attrs["objective"])
         for ax in axes[1 + len(names) :]:
             ax.set_visible(False)
         return picture

@@ -208,7 +208,10 @@ class Design:
         """
         from somersault.designs._plot import plot
 
-        return plot(self, steps, reach)
+        return plot(
+            self.history, self.around(steps, reach), self.trial.chosen, self.best, self.figure,
+            self.interval,
+        )  # fmt: skip
 
     def on(self, **changes: Any) -> Design:
         """The same design judged on other starts.

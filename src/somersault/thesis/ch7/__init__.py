@@ -15,8 +15,9 @@ CHAPTER = Chapter(
         _entry("sec7-3", "§7.3: the replay rate of the rudi", "_replay.replay_rate"),
         _entry("sec7-4", "§7.4: passive, active, and both", "_together.passive_and_active"),
         _entry("sec7-4-maps", "§7.4: how late, how far off, how stiff", "_maps.maps"),
-        _entry(
-            "sec7-5-rudi", "§7.5: the rudi's compliance, chosen", "_rudi_design.rudi_design", True
-        ),
+        _entry("sec7-1-legs", "§7.1: leg springs that correct the rate", "_legs.leg_springs", True),
+        _entry("sec7-5-layout", "§7.5: the layout, chosen", "_layout_design.layout_design", True),
+        _entry("sec7-5-doll", "§7.5: the doll, chosen", "_layout_design.doll_design", True),
+        _entry("sec7-5-rudi", "§7.5: the rudi, chosen", "_rudi_design.rudi_design", True),
     ),
 )

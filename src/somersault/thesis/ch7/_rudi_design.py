@@ -70,8 +70,8 @@ CASES = {
 
 
 def runs(
-    kept: rudi.Kept = "rudi", factor: float = 1.0, against: Flight | Mapping[str, float] | None = None,
-    report: Report | None = None,
+    kept: rudi.Kept = "rudi", factor: float = 1.0,
+    against: Flight | Mapping[str, float] | None = None, report: Report | None = None,
 ) -> Flights:  # fmt: skip
     """Compliant flights at `factor` times the momentum; landings are against the nominal one, or
     another."""
