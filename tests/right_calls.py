@@ -13,11 +13,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import tomli_w
 from matplotlib.figure import Figure
 
 import somersault as so
 from somersault import (
     attitude,
+    designs,
     ensembles,
     flight,
     laws,
@@ -168,6 +170,14 @@ LOCUS = {k: v for k, v in RANGES.items() if k != "samples"} | {
     "fixed": {},
 }
 LOOK = {"size": (64, 64)}
+GOAL = designs.Mean("twist", counts_as=3.2)
+DESIGN = {
+    "choose": {"spin": {"sets": "takeoff.spin", "between": [4.0, 6.0]}},
+    "vary": {"leant": {"adds_to": "takeoff.tilt", "normal": [0.0, 0.1]}},
+    "sample": {"size": 2},
+    "objective": {"kind": "mean", "quantity": "twist", "counts_as": 3.2},
+    "search": {"evaluations": 4, "held_out": 2},
+}
 SPEC = {"model": "furrer", "duration": 0.1, "takeoff": {"spin": 5.0}}
 
 
@@ -181,6 +191,7 @@ def files() -> None:
     Path("main.toml").write_text(
         'model = "furrer"\nduration = 0.1\n[takeoff]\nspin = 5.0\n', encoding="utf-8"
     )
+    Path("design.toml").write_text(tomli_w.dumps({**SPEC, **DESIGN}), encoding="utf-8")
     Path("run.toml").write_text('robot = "biped"\n', encoding="utf-8")
     flown().save("recorded.nc")
     scattered().dataset.to_netcdf("store.nc", engine="h5netcdf")
@@ -223,6 +234,20 @@ def _joint(**given: Any) -> Any:
 
 def _follow(**given: Any) -> Any:
     return _joint(name="after", kind="hinge", follows=model.Follow(**given))
+
+
+def _short() -> so.Maneuver:
+    arms = {"shoulder": so.JointTakeoff.sprung(angle=1.3, K=0.5, hold=True)}
+    return so.Maneuver("furrer", so.Takeoff(spin=8.64, joints=arms), 0.02)
+
+
+def _designed(**given: Any) -> Any:
+    right = {
+        "choose": {"K": so.Choose(sets="joints.shoulder.K", between=(0.5, 1.5))},
+        "vary": {"leant": NORMAL}, "objective": GOAL,
+    }  # fmt: skip
+    more = {"size": 2, "evaluations": 4, "population": 4, "held_out": 2}
+    return so.design(_short(), **{**right, **more, **given})
 
 
 def _vary(**given: Any) -> Any:
@@ -898,6 +923,63 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
         {"maneuver": so.torque_twist(), "twists": 0.5},
     ),
     "flight.with_momentum": lambda: (so.with_momentum, {"model": "furrer", "takeoff": TAKEOFF}),
+    # --- designs
+    "designs.design": lambda: (
+        so.design,
+        {
+            "what": _short(),
+            "choose": {"K": so.Choose(sets="joints.shoulder.K", between=(0.5, 1.5))},
+            "vary": {"leant": NORMAL},
+            "objective": GOAL,
+            "limits": [designs.Limit("twist", most=3.0)],
+            "size": 2,
+            "seed": 1,
+            "sequence": "random",
+            "evaluations": 4,
+            "population": 4,
+            "held_out": 2,
+            "progress": False,
+        },
+    ),
+    "designs.design_out": lambda: (_designed, {"out": "design", "threads": 1}),
+    "designs.Choose": lambda: (
+        lambda **given: _designed(choose={"K": so.Choose(**given)}),
+        {
+            "between": (0.5, 1.5),
+            "sets": "joints.shoulder.K",
+            "start": 1.0,
+            "scale": "log",
+            "unit": "",
+        },
+    ),
+    "designs.Choose.multiplies": lambda: (
+        lambda **given: _designed(choose={"K": so.Choose(between=(0.5, 1.5), **given)}),
+        {"multiplies": {"joints.shoulder.K": 2.0}, "adds_to": "joints.shoulder.angle"},
+    ),
+    "designs.Limit": lambda: (
+        lambda **given: _designed(limits=[designs.Limit(**given)]),
+        {"quantity": "twist", "most": 3.0, "share": 0.5},
+    ),
+    "designs.Mean": lambda: (
+        lambda **given: _designed(objective=designs.Mean(**given)),
+        {"quantity": "twist", "largest": False, "counts_as": 1.0},
+    ),
+    "designs.Quantile": lambda: (
+        lambda **given: _designed(objective=designs.Quantile(**given)),
+        {"quantity": "twist", "largest": False, "counts_as": 1.0, "q": 0.5},
+    ),
+    "designs.Share": lambda: (
+        lambda **given: _designed(objective=designs.Share(**given)),
+        {"quantity": "twist", "most": 0.1, "least": -0.1},
+    ),
+    "designs.Design.around": lambda: (_designed().around, {"steps": 2, "reach": 0.1}),
+    "designs.Design.plot": lambda: (_designed().plot, {"steps": 2, "reach": 0.1}),
+    "designs.Design.on": lambda: (_designed().on, {"size": 2, "seed": 3}),
+    "designs.parse_design": lambda: (
+        designs.parse_design,
+        {"given": {**SPEC, **DESIGN}, "beside": Path()},
+    ),
+    "designs.read_design": lambda: (designs.read_design, {"path": "design.toml"}),
     # --- ensembles
     "ensembles.Vary": lambda: (
         _vary,

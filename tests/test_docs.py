@@ -13,7 +13,7 @@ import pytest
 import somersault
 
 DOCS = Path(__file__).parents[1] / "docs"
-QUICK = ("extending", "flight", "models", "motions", "maneuvers", "doll", "laws")
+QUICK = ("extending", "flight", "models", "motions", "maneuvers", "doll", "laws", "design")
 SLOW = ("ensembles", "robots", "seeing", "stability", "twisting")
 RUN = (*QUICK, *(pytest.param(page, marks=pytest.mark.slow) for page in SLOW))
 BLOCK = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
@@ -56,7 +56,22 @@ def test_every_key_of_a_spec_is_in_the_documentation() -> None:
     code = re.findall(r"```.*?```|`[^`\n]*`|^    .*$", text, re.DOTALL | re.MULTILINE)
     words = set(re.findall(r"\w+", " ".join(code)))
     ours = [kind for kind in Registry.classes.values() if kind.__module__.startswith("somersault.")]
-    tables = [Keys, Tables, Sample, Reported, Recording, Compliance, OffNominal, AthleteKeys]
+    from somersault.designs._spec import Search
+    from somersault.designs._spec import Tables as DesignTables
+
+    designs = [DesignTables, Search, somersault.Choose, somersault.designs.Limit]
+    designs += somersault.designs.Objective.kinds.values()
+    tables = [
+        *designs,
+        Keys,
+        Tables,
+        Sample,
+        Reported,
+        Recording,
+        Compliance,
+        OffNominal,
+        AthleteKeys,
+    ]
     for table in (*tables, somersault.Takeoff, somersault.Replay, somersault.Vary, *ours):
         keys = {field.name for field in fields(table) if field.init}
         assert keys <= words, (table.__name__, keys - words)

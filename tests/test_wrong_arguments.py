@@ -86,6 +86,7 @@ WRONG: dict[str, Any] = {
 }
 ROOMS = (
     "attitude",
+    "designs",
     "dynamics",
     "ensembles",
     "flight",
@@ -132,6 +133,8 @@ NOT_FOR_USERS = {
         (
             "Ensemble",
             "EnsembleSpec",
+            "Design",
+            "DesignSpec*",
             "Plan",
             "Plan.drawn",
             "Flight",
@@ -186,6 +189,12 @@ NOT_FOR_USERS = {
             "mirrored_name",
             "seeds",
             "Prop.torque",
+            "Choose.*",
+            "Limit.*",
+            "Mean.*",
+            "Objective*",
+            "Quantile.*",
+            "Share.*",
             "History",
             "Simulation*",
             "Endings*",

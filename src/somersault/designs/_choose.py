@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import instance, name_list, one_of, shown
+from somersault._core.checks import instance, name_list, one_of, shown, text
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number, numbers
 from somersault.simulation import Name, Simulation
@@ -73,6 +73,7 @@ class Choose:
         """
         where = f"choose.{name}"
         instance(where, self, Choose)
+        text(f"{where}.unit", self.unit)
         one_of(f"{where}.scale", self.scale, _SCALES)
         bounds = numbers(f"{where}.between", self.between)
         if bounds.shape != (2,) or not bounds[0] < bounds[1]:
@@ -184,4 +185,4 @@ def moves_of(simulation: Simulation, name: str, chosen: Choose) -> tuple[Move, .
 def _names(what: str, given: Any) -> tuple[str, ...]:
     if isinstance(given, str):
         return (given,) if given else ()
-    return name_list(what, given) if len(given) else ()
+    return () if isinstance(given, tuple) and not given else name_list(what, given)

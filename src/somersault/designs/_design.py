@@ -12,7 +12,15 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.canonical import canonical
-from somersault._core.checks import by_name, instance, shown, truth, whole_number
+from somersault._core.checks import (
+    by_name,
+    file_path,
+    instance,
+    list_of,
+    shown,
+    truth,
+    whole_number,
+)
 from somersault._core.errors import SomersaultError
 from somersault._core.stages import stage
 from somersault.designs._candidates import check_apart
@@ -126,6 +134,7 @@ def design(
         raise SomersaultError(
             f"objective is {shown(objective)}; give designs.Share, designs.Mean or designs.Quantile"
         )
+    objective = objective.checked()
     simulation = _simulation(what, objective)
     chosen = {
         name: instance(f"choose.{name}", one, Choose).checked(name)
@@ -136,8 +145,8 @@ def design(
     moves = {name: moves_of(simulation, name, one) for name, one in chosen.items()}
     check_apart(moves)
     trial = Trial(
-        simulation, chosen, moves, dict(by_name("vary", vary)), objective.checked(),
-        tuple(instance("a limit", limit, Limit).checked() for limit in limits),
+        simulation, chosen, moves, dict(by_name("vary", vary)), objective,
+        tuple(limit.checked() for limit in list_of("limits", limits, Limit)),
         whole_number("size", size, 1, _MOST_SIZE), whole_number("seed", seed, 0, 2**31), sequence,
     )  # fmt: skip
     trial.check()
@@ -147,7 +156,7 @@ def design(
         whole_number("population", population, 2, evaluations)
     truth("progress", progress)
     begins = np.array([one.begins for one in chosen.values()])
-    folder = None if out is None else Path(out)
+    folder = None if out is None else file_path("out", out)
     where = {"threads": threads, "workers": workers, "scheduler": scheduler, "security": security}
     first = trial.planned(_table(chosen, begins[None]))  # refuses what cannot be run
     journal = Journal(folder, {

@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import text
+from somersault._core.checks import text, truth
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 
@@ -115,6 +115,7 @@ class Averaged(Objective, kind=""):
     counts_as: float | None = None
 
     def checked(self) -> Objective:
+        truth("objective.largest", self.largest)
         if self.counts_as is not None:
             number("objective.counts_as", self.counts_as)
         return super().checked()

@@ -11,6 +11,7 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.checks import whole_number
 from somersault._core.errors import SomersaultError
+from somersault._core.numbers import number
 from somersault.designs._candidates import CANDIDATE, Candidates
 from somersault.designs._trial import Outcome, Trial
 from somersault.simulation import ENDED
@@ -92,7 +93,7 @@ class Design:
     @property
     def simulation(self) -> Candidates:
         """What is run, with what is chosen in it: for `so.ensemble`."""
-        trial = self.trial
+        trial = self.held_out
         return Candidates(trial.simulation, trial.chosen, trial.moves, self.table[1:])
 
     @property
@@ -174,7 +175,7 @@ class Design:
         import xarray as xr
 
         whole_number("steps", steps, 2, _MOST_STEPS)
-        if not 0 < reach <= 1:
+        if not 0 < number("reach", reach) <= 1:
             raise SomersaultError(f"reach must be above 0 and at most 1, and is {reach:g}")
         chosen = list(self.trial.chosen.values())
         by = np.linspace(-reach, reach, steps)

@@ -36,8 +36,9 @@ class Share(Objective, kind="share"):
 
     def checked(self) -> Objective:
         for name in ("most", "least"):
-            if not np.isinf(getattr(self, name)):
-                number(f"objective.{name}", getattr(self, name))
+            bound = getattr(self, name)
+            if not (isinstance(bound, float) and np.isinf(bound)):
+                number(f"objective.{name}", bound)
         return super().checked()
 
     def good(self, values: Array, failed: Array) -> Array:

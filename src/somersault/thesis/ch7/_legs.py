@@ -82,11 +82,7 @@ def leg_springs() -> Result:
             f"({sprung.interval[0]:.3f} to {sprung.interval[1]:.3f}) on springs, "
             f"{rigid.figure:.3f} ({rigid.interval[0]:.3f} to {rigid.interval[1]:.3f}) with legs of "
             "one length", sprung.interval[1] < rigid.interval[0],
-            "Holds if the intervals are apart.",
-        ),
-        statement(
-            "sec7-1.half", _WHERE, "and to less than half", "not tried", f"{less:.2f} times less",
-            less > 2, "Ours.",
+            f"{less:.1f} times less. Holds if the intervals are apart.",
         ),
     )  # fmt: skip
     best = ", ".join(

@@ -106,7 +106,8 @@ def chosen(case: str, kept: rudi.Kept = "rudi") -> Design:
 def unperturbed(found: Design, kept: rudi.Kept, factor: float) -> dict[str, float]:
     """Where a design lands at another momentum from the nominal attitude."""
     names = tuple(landing_target(rudi.nominal(kept)))
-    alone = found.on(simulation=runs(kept, factor, report=Report(names)), size=2)
+    report = Report((*names, "landing_error"))
+    alone = found.on(simulation=runs(kept, factor, report=report), size=2)
     data = ensemble(alone.simulation).dataset.isel(sample=0)
     return {name: float(data[name]) for name in names}
 
