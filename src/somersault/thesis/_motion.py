@@ -13,7 +13,7 @@ from somersault._core.files import write
 if TYPE_CHECKING:
     from somersault.history import History
 
-_FPS = 30
+_FPS = 25
 _ALONE, _TOGETHER, _ROW = (960, 540), (1120, 540), (1280, 460)  # pixels: one, two, more
 
 

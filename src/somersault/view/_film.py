@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -80,10 +81,25 @@ def film(
     scene = Scene(shown_, moments, chosen, note)
     encoder = kind(chosen.size, fps)
     with stage("drawing the film, frame", len(moments)) as drawing:
-        for k in range(len(moments)):
-            encoder.add(scene.frame(k))
+        for _ in _ahead(scene.frame, len(moments), encoder.add):
             drawing.advance()
     write(file, encoder.finished())
+
+
+def _ahead(
+    drawn: Callable[[int], Array], count: int, encode: Callable[[Array], None]
+) -> Iterator[None]:
+    """Frames one after the other: the next one is drawn while the last is encoded."""
+    with ThreadPoolExecutor(1) as encoding:
+        last: Future[None] | None = None
+        for k in range(count):
+            frame = drawn(k).copy()  # a canvas draws the next one over it
+            if last is not None:
+                last.result()
+            last = encoding.submit(encode, frame)
+            yield
+        if last is not None:
+            last.result()
 
 
 def check_film(path: str | os.PathLike[str]) -> Path:
