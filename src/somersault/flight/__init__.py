@@ -26,6 +26,7 @@ from somersault.flight._prop import Prop
 from somersault.flight._release import Release, released
 from somersault.flight._replay import Replay
 from somersault.flight._report import ENDINGS, Report, landing_error, landing_target
+from somersault.flight._sensitivity import sensitivity, transition
 from somersault.flight._spec import KEYS
 from somersault.flight._strange import BROKE_OFF
 from somersault.flight._swing import GRAVITY, Swing, height_energy, swing
@@ -71,8 +72,10 @@ __all__ = [
     "principal_axes_along",
     "released",
     "rigid_continuation",
+    "sensitivity",
     "swing",
     "torque_twist",
+    "transition",
     "twist_time",
     "why_broken",
     "with_momentum",

@@ -31,7 +31,6 @@ from somersault.flight._tape import Kept, Sensed, Tape, Torques, recorded, recor
 from somersault.flight.behaviours import JointPlan, kinds
 from somersault.laws import seeds
 from somersault.model import Model
-from somersault.motion import Path
 from somersault.simulation import Name, Numbers
 
 _OF_JOINTS = ("times", "angles", "angle", "factor", "offset")  # what a nominal flight may vary
@@ -139,6 +138,20 @@ class Batch:
         return _nominal(self.model, self._in_si, h, self.duration, attitude, ())
 
     @property
+    def recorded(self) -> dict[str, tuple[Batch, Kept, list[int]]]:
+        """What is recorded before the flights, as `Course` calls it and in its order: of which
+        flight, what of it, and which parts of that are used."""
+        result: dict[str, tuple[Batch, Kept, list[int]]] = {}
+        if self.takeoff.tape is not None:
+            taped = [slot.joint.name for slot in self.system.layout.slots if slot.tape]
+            played = [self.model.speed_slice(name).start for name in taped]
+            result["tape"] = self.nominal, Torques(), played
+        if self.playback is not None and self.playback.errors:
+            names = tuple(ERRORS[name] for name in self.playback.errors)
+            result["nominal"] = self.perceived, Sensed(names), list(range(len(names)))
+        return result
+
+    @property
     def _in_si(self) -> tuple[JointPlan, ...]:
         return in_si(self.joints, self.begun().starts.values)
 
@@ -147,6 +160,10 @@ class Batch:
         if kept not in self._recordings:
             self._recordings[kept] = recorded(self, kept)
         return self._recordings[kept]
+
+    def moved_by(self, name: Name) -> bool:
+        """Whether a number of other flights is one of this nominal flight's too."""
+        return name in self.values and name[0] in _OF_JOINTS
 
     @cached_property
     def _recordings(self) -> dict[Kept, Tape]:
@@ -205,28 +222,15 @@ class Begun:
     def course(self) -> Course:
         """Paths, motor tapes and lasting parameters."""
         batch, starts = self.batch, self.starts
-        tape = None if batch.takeoff.tape is None else self._tape
-        return Course(batch.system, batch.joints, starts, batch.duration, tape, self._perceived)
-
-    @property
-    def _tape(self) -> Path:
-        """The motor tape of each flight, or one for all where they are alike."""
-        tape = self._recorded(self.batch.nominal, Torques())
-        played = [slot.joint.name for slot in self.batch.system.layout.slots if slot.tape]
-        return tape.path([self.batch.model.speed_slice(name).start for name in played])
-
-    @property
-    def _perceived(self) -> Path | None:
-        """What a replay's law compares with of the nominal flight, if it does."""
-        playback = self.batch.playback
-        if playback is None or not playback.errors:
-            return None
-        kept = Sensed(tuple(ERRORS[name] for name in playback.errors))
-        return self._recorded(self.batch.perceived, kept).path(list(range(len(kept.names))))
+        parts = {
+            what: self._recorded(nominal, kept).path(played)
+            for what, (nominal, kept, played) in batch.recorded.items()
+        }
+        return Course(batch.system, batch.joints, starts, batch.duration, **parts)
 
     def _recorded(self, nominal: Batch, kept: Kept) -> Tape:
         tape, values = nominal.recording(kept), self.starts.values
-        moved = {n: x for n, x in values.items() if n in nominal.values and n[0] in _OF_JOINTS}
+        moved = {n: x for n, x in values.items() if nominal.moved_by(n)}
         if any(isinstance(x, np.ndarray) for x in moved.values()):
             return recorded_each(nominal, kept, moved, len(self.starts.q), tape)
         return tape

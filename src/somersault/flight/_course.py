@@ -23,7 +23,8 @@ class Course:
     """The parameters of N flights as time goes on, and the times at which they change.
 
     `tape` has the torques of all compliant joints side by side, `nominal` what is sensed of the
-    nominal flight and a replay's law compares with.
+    nominal flight and a replay's law compares with. `changing` are the paths, then these two;
+    `still` (N, …) are the parameters that stay as they are.
     """
 
     def __init__(
@@ -47,9 +48,9 @@ class Course:
         for name, path in paths:
             path.check_known(name, fastest * duration)
         others = [path for path in (tape, nominal) if path is not None]
-        self._changing = [path for _, path in paths] + others
+        self.changing = [path for _, path in paths] + others
         self._tape = tape
-        self._still = self._lasting(begun)
+        self.still = self._lasting(begun)
 
     def _lasting(self, begun: Starts) -> Array:
         """Parameters that stay as they are, (N, …)."""
@@ -74,7 +75,7 @@ class Course:
         """
         if self._tape is not None and not self._replayed:  # its pieces end at all knots
             return np.atleast_2d(self._tape.knots)
-        every = [np.atleast_2d(p.knots) for p in self._changing]
+        every = [np.atleast_2d(p.knots) for p in self.changing]
         rows = max([1, *(len(k) for k in every)])
         ends = [np.zeros((rows, 1)), np.full((rows, 1), self.duration)]
         if self._replayed:  # the duration is no phase, and may be before the last knots or after
@@ -94,10 +95,10 @@ class Course:
         phase, rate, _ = clock_at(list(clock), times)
         return phase, rate
 
-    def _now(self, phases: Array) -> Array:
+    def now(self, phases: Array) -> Array:
         """Parameters that change, at phases (N or 1, K) and a little after, (N or 1, K, …)."""
         parts = [np.empty((*phases.shape, 0))]
-        for one in self._changing:
+        for one in self.changing:
             since, coefficients = one.at(phases)
             parts += [since[..., None], coefficients]
         rows = max(len(part) for part in parts)
@@ -106,15 +107,15 @@ class Course:
     def parameters(self, times: Array, states: Array) -> Array:
         """Those that hold at times (N, K) and states (N, K, n) and a little after: (N, K,
         parameters)."""
-        still = np.broadcast_to(self._still[:, None], (*times.shape, self._still.shape[1]))
-        return np.concatenate([self._now(self.phase(times, states)[0]), still], 2)
+        still = np.broadcast_to(self.still[:, None], (*times.shape, self.still.shape[1]))
+        return np.concatenate([self.now(self.phase(times, states)[0]), still], 2)
 
     def solve(
         self, first: Array, samples: Array, tolerance: float, most_steps: int = MOST_STEPS,
     ) -> Solution:  # fmt: skip
         """From rows of `System.start`, with states at `samples` (K,) or (N, K)."""
-        pieces = Pieces(self.knots[:, 1:], self._now(self.knots[:, :-1]))
+        pieces = Pieces(self.knots[:, 1:], self.now(self.knots[:, :-1]))
         return self._system.integrator.solve(
-            first, self._still, samples, tolerance, pieces=pieces, most_steps=most_steps,
+            first, self.still, samples, tolerance, pieces=pieces, most_steps=most_steps,
             every=self._system.layout.every,
         )  # fmt: skip

@@ -195,7 +195,7 @@ def check(report: Report, target: Mapping[str, float], model: Model) -> None:
 
 def variables(report: Report, model: Model) -> dict[str, Variable]:
     """All that is reported, in order."""
-    unit = _units(model)
+    unit = units(model)
     listed = {"time": Variable("s", words="when the flight ended")}
     for name in report.quantities:
         listed[name] = Variable(unit[name])
@@ -208,7 +208,8 @@ def variables(report: Report, model: Model) -> dict[str, Variable]:
     return listed
 
 
-def _units(model: Model) -> dict[str, str]:
+def units(model: Model) -> dict[str, str]:
+    """The unit of all that is known of a flight, by name."""
     units = dict.fromkeys(TURNS, "1") | dict.fromkeys((*ANGLES, LANDING_ERROR), "rad")
     units |= dict.fromkeys((*RATES, *VELOCITIES), "rad/s")
     for joint in model.joints:

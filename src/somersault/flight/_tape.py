@@ -19,17 +19,19 @@ from somersault._core.array import Array
 from somersault.engine import Kernel, Solution
 from somersault.flight._course import Course
 from somersault.flight._system import System, reader
+from somersault.flight._watch import torques
+from somersault.model import Model
 from somersault.motion import TAPE_DEGREE, Path
 from somersault.simulation import Numbers
 
-_TOLERANCE = 1e-13  # of each step of the nominal flight
+RECORDED_TO = 1e-13  # of each step of the nominal flight
 _LEFT_OUT = 1e-11  # of a piece's greatest torque: what the last coefficients may be,
 _LITTLE = 1e-4  # where that is more than so much of the flight's
 _LONGEST, _SHORTEST = 0.1, 1e-6  # s of a piece
 _AT_ONCE = 2**22  # numbers that a recording of many flights holds
-_COUNT = TAPE_DEGREE + 1
-_ANGLES = np.pi * (np.arange(_COUNT) + 0.5) / _COUNT
-_POINTS = 0.5 - 0.5 * np.cos(_ANGLES)  # within a piece, 0 to 1
+POINTS = TAPE_DEGREE + 1  # in each piece
+_ANGLES = np.pi * (np.arange(POINTS) + 0.5) / POINTS
+_WITHIN = 0.5 - 0.5 * np.cos(_ANGLES)  # within a piece, 0 to 1
 
 
 class Flights(Protocol):
@@ -49,6 +51,9 @@ class Kept(Protocol):
     def little(self) -> float:
         """What is left out is told from nothing by its share of so much, at least."""
 
+    def called(self, model: Model) -> tuple[str, ...]:
+        """What reports call it."""
+
     def read(self, system: System, solution: Solution, times: Array, parameters: Array) -> Array:
         """It at the samples of a solution, (N, K, …)."""
 
@@ -58,6 +63,9 @@ class Torques:
     """The torques at all joint speeds, N m."""
 
     little: ClassVar[float] = 0.0
+
+    def called(self, model: Model) -> tuple[str, ...]:
+        return tuple(torques(model))
 
     def read(self, system: System, solution: Solution, times: Array, parameters: Array) -> Array:
         x = np.concatenate([solution.states, times[..., None], parameters], 2)
@@ -70,6 +78,9 @@ class Sensed:
 
     names: tuple[str, ...]
     little: ClassVar[float] = 1.0
+
+    def called(self, model: Model) -> tuple[str, ...]:
+        return self.names
 
     def read(self, system: System, solution: Solution, times: Array, parameters: Array) -> Array:
         x = [solution.watched, solution.states, times[..., None], parameters]
@@ -104,8 +115,8 @@ class Tape:
         powers, spans = self.powers[:, :, played], np.diff(self.edges)
         last = spans.shape[1] - 1 - np.argmax(spans[:, ::-1] > 0, 1)
         rows = np.arange(len(last))
-        scale = spans[rows, last, None, None] ** np.arange(_COUNT)
-        before, after = np.zeros((2, len(rows), 1, len(played), _COUNT))
+        scale = spans[rows, last, None, None] ** np.arange(POINTS)
+        before, after = np.zeros((2, len(rows), 1, len(played), POINTS))
         before[..., 0] = powers[:, :1, :, 0]
         after[:, 0, :, 0] = (powers[rows, last] * scale).sum(-1)
         whole = np.concatenate([before, powers, after], 1)
@@ -124,7 +135,7 @@ def recorded_each(nominal: Nominal, kept: Kept, values: Numbers, count: int, one
     """
     length = float(np.diff(one.edges).max())
     # Of a flight: what inverse dynamics is given, in twice as many pieces.
-    size = 2 * one.powers.shape[1] * _COUNT * (8 * len(nominal.system.kinds) + 20)
+    size = 2 * one.powers.shape[1] * POINTS * (8 * len(nominal.system.kinds) + 20)
     parts = []
     for some in np.array_split(np.arange(count), -(-count * size // _AT_ONCE)):
         chosen = {n: x[some] if isinstance(x, np.ndarray) else x for n, x in values.items()}
@@ -162,23 +173,34 @@ def _exact(nominal: Nominal, kept: Kept, values: Numbers, count: int, length: fl
 
 def _recorded(system: System, kept: Kept, flights: Flights, edges: Array) -> tuple[Tape, Array]:
     """Tapes in pieces between edges (N, P + 1), and which pieces leave too much out, (N, P)."""
-    count, spans = len(edges), np.diff(edges)
-    times = (edges[:, :-1, None] + spans[..., None] * _POINTS).reshape(count, -1)
-    times = np.minimum(times, flights.course.duration)
-    solution = flights.course.solve(flights.rows, times, _TOLERANCE)
-    begun = solution.states[:, ::_COUNT]
-    parameters = np.repeat(flights.course.parameters(edges[:, :-1], begun), _COUNT, 1)
+    times, spans = points(edges, flights.course.duration), np.diff(edges)
+    solution = flights.course.solve(flights.rows, times, RECORDED_TO)
+    begun = solution.states[:, ::POINTS]
+    parameters = np.repeat(flights.course.parameters(edges[:, :-1], begun), POINTS, 1)
     values = kept.read(system, solution, times, parameters)
-    values = values.reshape(count, -1, _COUNT, values.shape[-1]).swapaxes(2, 3)
-    series = _polynomials()(values)
-    scale = spans[..., None, None] ** np.arange(_COUNT)
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        powers = series[..., :_COUNT] / scale
-    powers = np.where(np.isfinite(powers), powers, 0.0)  # of pieces of next to no length
+    powers, series = through(edges, values)
+    values = values.reshape(*spans.shape, POINTS, -1).swapaxes(2, 3)
     most = np.abs(values).max((2, 3))
     most = np.maximum(most, np.maximum(_LITTLE * most.max(1, keepdims=True), kept.little))
-    left_out = np.abs(series[..., _COUNT:]).max((2, 3)) > _LEFT_OUT * most
+    left_out = np.abs(series[..., POINTS:]).max((2, 3)) > _LEFT_OUT * most
     return Tape(edges, powers), left_out & (spans > 0)
+
+
+def points(edges: Array, duration: float) -> Array:
+    """The times in the pieces between edges (N, P + 1) at which is recorded, (N, P points)."""
+    spans = np.diff(edges)[..., None]
+    return np.minimum((edges[:, :-1, None] + spans * _WITHIN).reshape(len(edges), -1), duration)
+
+
+def through(edges: Array, values: Array) -> tuple[Array, Array]:
+    """The polynomials through values (N, P points, what is kept): `Tape.powers`, and before them
+    what `_polynomials` gives."""
+    spans = np.diff(edges)
+    series = _polynomials()(values.reshape(*spans.shape, POINTS, -1).swapaxes(2, 3))
+    scale = spans[..., None, None] ** np.arange(POINTS)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        powers = series[..., :POINTS] / scale
+    return np.where(np.isfinite(powers), powers, 0.0), series  # of pieces of next to no length
 
 
 def _divided(knots: Array, length: float) -> Array:
@@ -203,14 +225,14 @@ def _polynomials() -> Kernel:
 
     Compiled, so that a flight's digits do not depend on how many there are.
     """
-    to_series = 2 / _COUNT * np.cos(np.outer(np.arange(_COUNT), np.pi - _ANGLES))
+    to_series = 2 / POINTS * np.cos(np.outer(np.arange(POINTS), np.pi - _ANGLES))
     to_series[0] /= 2
-    to_powers = np.zeros((_COUNT, _COUNT))  # of the Chebyshev polynomials of 2 u − 1, by columns
+    to_powers = np.zeros((POINTS, POINTS))  # of the Chebyshev polynomials of 2 u − 1, by columns
     to_powers[0, 0], to_powers[:2, 1] = 1.0, (-1.0, 2.0)
-    for k in range(2, _COUNT):
+    for k in range(2, POINTS):
         to_powers[1:, k] = 4 * to_powers[:-1, k - 1]
         to_powers[:, k] -= 2 * to_powers[:, k - 1] + to_powers[:, k - 2]
-    values = ca.SX.sym("values", _COUNT)
+    values = ca.SX.sym("values", POINTS)
     series = ca.DM(to_series) @ values
     both = ca.vertcat(ca.DM(to_powers) @ series, series[-2:])
     return Kernel(ca.Function("polynomials", [values], [ca.densify(both)]))
