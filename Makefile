@@ -31,6 +31,7 @@ bench: $(VENV)/.test
 	$(BIN)/python benchmarks/forward_dynamics.py
 	$(BIN)/python benchmarks/stability_chart.py
 	$(BIN)/python benchmarks/flights.py
+	$(BIN)/python benchmarks/sensitivity.py
 	$(BIN)/python benchmarks/ensembles.py
 	$(BIN)/python benchmarks/films.py
 	$(BIN)/python benchmarks/robots.py

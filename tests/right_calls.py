@@ -813,6 +813,11 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
             "samples": 3,
         },
     ),
+    "flight.sensitivity": lambda: (
+        flight.sensitivity,
+        {"maneuver": maneuver(), "with_respect_to": ["takeoff.tilt"], "of": ["tilt"]},
+    ),
+    "flight.transition": lambda: (flight.transition, {"maneuver": maneuver()}),
     "flight.flights": lambda: (
         flight.flights,
         {

@@ -68,7 +68,7 @@ def sensitivity(
     >>> round(float(slopes.sel(landing="twist", takeoff="takeoff.tilt")), 4)
     -0.7721
     """
-    batch = _batch(maneuver)
+    batch = watched_batch(maneuver)
     names = name_list("with_respect_to", with_respect_to)
     looked_at = _looked_at(maneuver, of)
     if not names or not looked_at:
@@ -132,7 +132,7 @@ def transition(maneuver: Maneuver) -> xr.DataArray:
     >>> bool(np.isclose(greatest, np.exp(2 * np.pi * np.real(roots).max()), rtol=1e-6))
     True
     """
-    begun = _batch(maneuver).begun()
+    begun = watched_batch(maneuver).begun()
     _ = begun.start
     directions, names = of_state(begun), moving_names(begun.batch.system)
     refuse_jumps(begun, directions, names)
@@ -142,7 +142,7 @@ def transition(maneuver: Maneuver) -> xr.DataArray:
     return _labelled(end.motion().T[1:], labels, labels)
 
 
-def _batch(maneuver: Maneuver) -> Batch:
+def watched_batch(maneuver: Maneuver) -> Batch:
     """The flights of a maneuver, whose turns are watched."""
     return replace(instance("maneuver", maneuver, Maneuver).batch, extremes=(), differing=None)
 
