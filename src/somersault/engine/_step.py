@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from somersault.engine import _dop853 as table
-from somersault.engine._vectors import Vectors, number
+from somersault.engine._vectors import Loop, Vectors, number
 
 # What the functions here are given: rows of memory that hold
 BLOCK = "%x"  # the flights, as `Rows` orders them
@@ -105,8 +105,8 @@ def step(rows: Rows, event: bool) -> str:
     search = _Search(v, time, status) if event else None
     if search:
         taken = v.where(search.searching, search.middle, taken)
-    new = _stages(v, rows, taken, time)
-    squared = _error(v, rows.moving, taken, new)
+    _stages(v, rows, taken, time)
+    squared = _error(v, rows.moving, taken)
     v.call("rhs", TRIAL, v.at(SLOPES, 12 * rows.moving))
     good = v.both(flying, v.test("ole", squared, number(1.0)))
     accepted = good
@@ -124,9 +124,9 @@ def step(rows: Rows, event: bool) -> str:
             v.store(BLOCK, row, v.where(accepted, value, v.load(BLOCK, row)))
     v.store(CONTROL, TIME, now)
     v.store(BLOCK, rows.state, now)
-    for row in range(rows.moving):
-        v.store(BLOCK, row, v.where(accepted, new[row], v.load(BLOCK, row)))
-        last = v.load(SLOPES, 12 * rows.moving + row)
+    for row in Loop(v, rows.moving):
+        v.store(BLOCK, row, v.where(accepted, v.load(TRIAL, row), v.load(BLOCK, row)))
+        last = v.load(SLOPES, row + 12 * rows.moving)
         v.store(SLOPES, row, v.where(accepted, last, v.load(SLOPES, row)))
     at_end = v.both(v.test("oeq", status, number(FLYING)), v.outside(short_of_end))
     over = v.both(v.test("ogt", status, number(FLYING)), v.test("olt", status, number(SEARCHING)))
@@ -216,53 +216,53 @@ def _next_length(
 
 def _watched(v: Vectors, rows: Rows, before: str, after: str) -> list[str]:
     """What is watched, after the step from the block to the trial between the two times."""
-    state, moving, still = rows.state, rows.moving, [number(0.0)] * rows.carried
-    values = [v.load(BLOCK, row) for row in range(state)]
-    values += [*(v.load(SLOPES, row) for row in range(moving)), *still]
-    values += [v.load(TRIAL, row) for row in range(state)]
-    values += [*(v.load(SLOPES, 12 * moving + row) for row in range(moving)), *still]
-    values += [before, after]
-    values += [v.load(BLOCK, row) for row in range(state + 1, rows.inputs)]
-    for row, value in enumerate(values):
-        v.store(LOOK, row, value)
+    state, moving, at = rows.state, rows.moving, 0
+    for block, slopes in ((BLOCK, 0), (TRIAL, 12 * moving)):
+        v.copy(LOOK, at, block, 0, state)
+        v.copy(LOOK, at + state, SLOPES, slopes, moving)
+        for row in range(moving, state):
+            v.store(LOOK, at + state + row, number(0.0))
+        at += 2 * state
+    v.store(LOOK, at, before)
+    v.store(LOOK, at + 1, after)
+    v.copy(LOOK, at + 2, BLOCK, state + 1, rows.inputs - state - 1)
     v.call("watch", LOOK, SEEN)
     return [v.load(SEEN, row) for row in range(rows.watched)]
 
 
-def _stages(v: Vectors, rows: Rows, step: str, time: str) -> list[str]:
-    """All twelve slopes (the first is there) and the new state, in the trial and returned."""
+def _stages(v: Vectors, rows: Rows, step: str, time: str) -> None:
+    """All twelve slopes (the first is there), and the new state in the trial."""
     moving = rows.moving
     for stage, weights in enumerate(table.STAGES, 1):
-        for row in range(moving):
-            v.store(TRIAL, row, _ahead(v, moving, row, step, weights))
+        _ahead(v, moving, step, weights)
         v.store(TRIAL, rows.state, v.multiply_add(number(table.NODES[stage]), step, time))
         v.call("rhs", TRIAL, v.at(SLOPES, stage * moving))
-    new = []
-    for row in range(moving):
-        new.append(_ahead(v, moving, row, step, table.WEIGHTS))
-        v.store(TRIAL, row, new[-1])
+    _ahead(v, moving, step, table.WEIGHTS)
     v.store(TRIAL, rows.state, v.add(time, step))
-    return new
 
 
-def _ahead(v: Vectors, state: int, row: int, step: str, weights: tuple[float, ...]) -> str:
-    """y + h Σ weights · slopes for one row of the state."""
-    slopes = [v.load(SLOPES, j * state + row) if w else "" for j, w in enumerate(weights)]
-    return v.multiply_add(step, v.weighted(weights, slopes), v.load(BLOCK, row))
+def _ahead(v: Vectors, moving: int, step: str, weights: tuple[float, ...]) -> None:
+    """y + h Σ weights · slopes, in the trial."""
+    for row in Loop(v, moving):
+        slopes = [v.load(SLOPES, row + j * moving) if w else "" for j, w in enumerate(weights)]
+        ahead = v.multiply_add(step, v.weighted(weights, slopes), v.load(BLOCK, row))
+        v.store(TRIAL, row, ahead)
 
 
-def _error(v: Vectors, state: int, step: str, new: list[str]) -> str:
-    """Hairer's combined estimate over the tolerance, squared."""
+def _error(v: Vectors, state: int, step: str) -> str:
+    """Hairer's combined estimate over the tolerance, squared, from the block to the trial."""
     tolerance = v.load(CONTROL, TOLERANCE)
-    five = three = number(0.0)
-    for row in range(state):
-        slopes = [v.load(SLOPES, j * state + row) for j in range(12)]
-        size = v.greatest(v.size(v.load(BLOCK, row)), v.size(new[row]))
+    sums = Loop(v, state, [number(0.0)] * 2)
+    for row in sums:
+        slopes = [v.load(SLOPES, row + j * state) for j in range(12)]
+        size = v.greatest(v.size(v.load(BLOCK, row)), v.size(v.load(TRIAL, row)))
         scale = v.mul(tolerance, v.add(size, number(1.0)))
         one_over = v.div(number(1.0), scale)
         e5 = v.mul(v.weighted(table.ERROR_5, slopes), one_over)
         e3 = v.mul(v.weighted(table.ERROR_3, slopes), one_over)
-        five, three = v.multiply_add(e5, e5, five), v.multiply_add(e3, e3, three)
+        five, three = sums.totals
+        sums.totals = [v.multiply_add(e5, e5, five), v.multiply_add(e3, e3, three)]
+    five, three = sums.totals
     below = v.multiply_add(number(0.01), three, five)
     below = v.where(v.test("ueq", below, number(0.0)), number(1e-300), below)
     scaled = v.mul(v.mul(step, step), v.mul(five, five))
@@ -275,8 +275,8 @@ def renew(rows: Rows, event: bool) -> str:
     v = Vectors()
     lanes = v.unpacked("%lanes")
     v.call("rhs", BLOCK, v.at(SLOPES, rows.moving))
-    for row in range(rows.moving):
-        new = v.load(SLOPES, rows.moving + row)
+    for row in Loop(v, rows.moving):
+        new = v.load(SLOPES, row + rows.moving)
         v.store(SLOPES, row, v.where(lanes, new, v.load(SLOPES, row)))
     if event:
         v.call("gauge", BLOCK, LIMIT)

@@ -1,20 +1,23 @@
-"""Straight-line LLVM code on vectors of eight doubles, written as text.
+"""LLVM code on vectors of eight doubles, written as text: straight lines, and loops over rows.
 
-Eight samples travel together in the lanes of <8 x double>. Nothing here branches, so what a lane
-computes never depends on its neighbours. In memory a vector is a row of eight doubles, and a
+Eight samples travel together in the lanes of <8 x double>. Nothing here branches by a value, so
+what a lane computes never depends on its neighbours. In memory a vector is a row of eight doubles, and a
 function is given the first of its rows.
 """
 
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 LANES = 8
 VECTOR = f"<{LANES} x double>"
 MASK = f"<{LANES} x i1>"
 BITS = f"<{LANES} x i64>"
 _KIND = f"v{LANES}f64"
+_FEW, _TOGETHER = 12, 4  # rows that are written one after another, and in each turn of a loop
 
 _DECLARATIONS = f"""
 declare {VECTOR} @llvm.fmuladd.{_KIND}({VECTOR}, {VECTOR}, {VECTOR})
@@ -37,6 +40,17 @@ def number(value: float) -> str:
     return "<" + ", ".join([f"double 0x{bits}"] * LANES) + ">"
 
 
+@dataclass(frozen=True)
+class Row:
+    """The row that a loop is at, or so many `more`."""
+
+    name: str
+    more: int = 0
+
+    def __add__(self, more: int) -> Row:
+        return Row(self.name, self.more + more)
+
+
 class Vectors:
     """Writes one instruction after another; every method returns the name of its result.
 
@@ -44,8 +58,9 @@ class Vectors:
     """
 
     def __init__(self) -> None:
-        self._lines: list[str] = []
+        self._lines: list[str] = ["entry:"]
         self._count = 0
+        self._block = "entry"
 
     def function(
         self, name: str, rows: Sequence[str], mask: str | None = None, result: str | None = None
@@ -69,23 +84,37 @@ class Vectors:
         self._lines.append(f"  {name} = {expression}")
         return name
 
+    def begin_block(self, name: str, branch: str = "br label %{}") -> tuple[list[str], str, str]:
+        """A new block, to which `branch` goes: the lines, the block before, and its own name."""
+        self._count += 1
+        before, self._block = self._block, f"{name}{self._count}"
+        self._lines += [f"  {branch.format(self._block)}", f"{self._block}:"]
+        return self._lines, before, self._block
+
     # -------------------------------------------------------------------------- memory
 
-    def at(self, base: str, row: int) -> str:
+    def at(self, base: str, row: int | Row) -> str:
         """Address of a row."""
-        return self._emit(f"getelementptr double, ptr {base}, i64 {row * LANES}")
+        if isinstance(row, int):
+            return self._emit(f"getelementptr double, ptr {base}, i64 {row * LANES}")
+        return self._emit(f"getelementptr {VECTOR}, ptr {self.at(base, row.more)}, i64 {row.name}")
 
-    def load(self, base: str, row: int) -> str:
+    def load(self, base: str, row: int | Row) -> str:
         """A row of memory."""
         return self._emit(f"load {VECTOR}, ptr {self.at(base, row)}, align 64")
 
-    def store(self, base: str, row: int, value: str) -> None:
+    def store(self, base: str, row: int | Row, value: str) -> None:
         """A value into a row of memory."""
         self._lines.append(f"  store {VECTOR} {value}, ptr {self.at(base, row)}, align 64")
 
     def call(self, name: str, *rows: str) -> None:
         """Call another function on rows of memory."""
         self._lines.append(f"  call void @{name}({', '.join(f'ptr {row}' for row in rows)})")
+
+    def copy(self, to: str, to_row: int, base: str, row: int, count: int) -> None:
+        """So many rows from one place to another."""
+        for k in Loop(self, count):
+            self.store(to, k + to_row, self.load(base, k + row))
 
     # ---------------------------------------------------------------------- arithmetic
 
@@ -220,3 +249,38 @@ class Vectors:
     def odd(self, a: str) -> str:
         """A mask of the lanes whose integer is odd."""
         return self._emit(f"trunc {BITS} {a} to {MASK}")
+
+
+class Loop:
+    """Writes the same for each of so many rows: one after another where they are few, else in a
+    loop over some at a time, since the time of compiling grows faster than the code is long.
+
+    `totals` are what is added up on the way: set them to what they become with a row.
+    """
+
+    def __init__(self, v: Vectors, count: int, totals: Sequence[str] = ()) -> None:
+        self._v, self._count, self.totals = v, count, list(totals)
+
+    def __iter__(self) -> Iterator[Any]:
+        turns = self._count // _TOGETHER if self._count > _FEW else 0
+        if turns:
+            yield from self._loop(turns)
+        yield from range(turns * _TOGETHER, self._count)
+
+    def _loop(self, turns: int) -> Iterator[Row]:
+        lines, before, block = self._v.begin_block("each")
+        row, first = f"%{block}.row", self.totals
+        self.totals = [f"%{block}.total{k}" for k in range(len(first))]
+        sums, head = self.totals, len(lines)
+        for more in range(_TOGETHER):
+            yield Row(row, more)
+        following, again = f"%{block}.next", f"%{block}.again"
+        heads = [f"  {row} = phi i64 [ 0, %{before} ], [ {following}, %{block} ]"]
+        for name, start, last in zip(sums, first, self.totals, strict=True):
+            heads.append(f"  {name} = phi {VECTOR} [ {start}, %{before} ], [ {last}, %{block} ]")
+        lines[head:head] = heads
+        lines += [
+            f"  {following} = add i64 {row}, {_TOGETHER}",
+            f"  {again} = icmp ult i64 {following}, {turns * _TOGETHER}",
+        ]
+        self._v.begin_block("after", f"br i1 {again}, label %{block}, label %{{}}")
