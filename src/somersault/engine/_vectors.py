@@ -1,8 +1,8 @@
 """LLVM code on vectors of eight doubles, written as text: straight lines, and loops over rows.
 
 Eight samples travel together in the lanes of <8 x double>. Nothing here branches by a value, so
-what a lane computes never depends on its neighbours. In memory a vector is a row of eight doubles, and a
-function is given the first of its rows.
+what a lane computes never depends on its neighbours. In memory a vector is a row of eight doubles,
+and a function is given the first of its rows.
 """
 
 from __future__ import annotations
