@@ -116,29 +116,39 @@ def test_of_a_replay_by_errors():
     check(off, {**to, "joints.shoulder.angles.3": 0.004})
 
 
-@pytest.mark.parametrize("number", range(6))
+@pytest.mark.parametrize("number", range(8))
 def test_of_random_trees(number):
+    """Joints are sprung, prescribed and compliant in turn; every other tree has a law."""
     rng = np.random.default_rng([55, number])
     model = random_tree(rng, bodies=3 + number % 3, free=True)
-    omega = tuple(rng.normal(size=3) * 3)
-    takeoff = so.Takeoff(tilt=0.3, twist=-0.2, angular_velocity=omega)
     to = dict.fromkeys(ATTITUDE, 0.01) | {"takeoff.angular_velocity.1": 0.02}
     body = model.bodies[-1].name
     to |= {f"bodies.{body}.mass": 0.01, f"bodies.{body}.position.2": 0.002}
-    joints = {}
-    for joint in model.joints:
-        ball = joint.kind == "ball"
-        angle, rate = (0.2, 0.1, -0.3), (1.0, 0.5, -1.0)
-        if not ball:
-            angle, rate = joint.home[0] + 0.1, 0.7
-        joints[joint.name] = so.JointTakeoff.sprung(
-            angle=angle, rate=rate, stiffness=12.0, damping=0.3
-        )
-        part = ".2" if ball else ""
-        to[f"joints.{joint.name}.angle{part}"] = 0.01
-        to[f"joints.{joint.name}.rate{part}"] = 0.02
-        to[f"joints.{joint.name}.stiffness"] = 0.1
-    check(so.Maneuver(model, replace(takeoff, joints=joints), 0.5), to)
+    joints: dict[str, so.JointTakeoff] = {}
+    for k, joint in enumerate(model.joints):
+        name, path = f"joints.{joint.name}", {"times": [0.11, 0.33], "angles": [0.2, -0.3]}
+        springs = {"stiffness": 12.0, "damping": 0.3}
+        if joint.kind == "ball":
+            joints[joint.name] = so.JointTakeoff.sprung(
+                (0.2, 0.1, -0.3), (1.0, 0.5, -1.0), **springs
+            )
+            to |= {f"{name}.angle.2": 0.01, f"{name}.rate.2": 0.02, f"{name}.stiffness": 0.1}
+        elif number % 2 and not k:
+            law = {"law": "-k * tilt_rate", "gains": {"k": 0.5}, "every": 0.05, "delay": 0.05}
+            joints[joint.name] = so.JointTakeoff.torque_law(joint.home[0], 0.7, **law, **springs)
+            to |= {f"{name}.gains.k": 0.01, f"{name}.damping": 0.01}
+        elif k % 3 == 1:
+            joints[joint.name] = so.JointTakeoff.prescribed(**path)
+            to |= {f"{name}.times.2": 0.005, f"{name}.angles.1": 0.01}
+        elif k % 3 == 2:
+            joints[joint.name] = so.JointTakeoff.compliant(**path, **springs)
+            to |= {f"{name}.times.2": 0.005, f"{name}.angles.1": 0.01, f"{name}.damping": 0.01}
+        else:
+            joints[joint.name] = so.JointTakeoff.sprung(joint.home[0] + 0.1, 0.7, **springs)
+            to |= {f"{name}.angle": 0.01, f"{name}.rate": 0.02, f"{name}.stiffness": 0.1}
+    omega = tuple(rng.normal(size=3) * 3)
+    takeoff = so.Takeoff(tilt=0.3, twist=-0.2, angular_velocity=omega, joints=joints)
+    check(so.Maneuver(model, takeoff, 0.5), to)
 
 
 def test_of_joints_that_follow_others():
