@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from somersault.dynamics import Equations
 from somersault.flight._swing import Swing
 from somersault.flight._takeoff import Takeoff
 from somersault.flight.behaviours import JointTakeoff
-from somersault.model import Joint, Mount, body_frames, body_velocities, centre_of_mass
+from somersault.model import Joint, Model, Mount, body_frames, body_velocities, centre_of_mass
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,7 @@ def released(
     places = [mount.held.coordinate_slice(joint.name).start for joint in rider.joints]
     own, own_rates = q[places], u[places]
     still = np.concatenate([omega, velocity, own_rates])
-    linear = Equations(rider).momentum(own, still)[3:] / rider.mass
+    linear = _equations(rider).momentum(own, still)[3:] / rider.mass
     setups = by_name("joints", joints)
     for name, setup in setups.items():
         instance(f"takeoff of joint {name}", setup, JointTakeoff)
@@ -106,6 +107,12 @@ def released(
         joints=takeoffs,
     )
     return Release(takeoff, centre, float(swung.times[-1]))
+
+
+@lru_cache(maxsize=8)
+def _equations(model: Model) -> Equations:
+    """Compiled once for all that is let go."""
+    return Equations(model)
 
 
 def _base_motion(mount: Mount, q: Array, u: Array) -> tuple[Array, Array, Array, Array]:
