@@ -20,6 +20,7 @@ from somersault.dynamics import Equations
 from somersault.flight._swing import Swing
 from somersault.flight._takeoff import Takeoff
 from somersault.flight.behaviours import JointTakeoff
+from somersault.history import Recording
 from somersault.model import Joint, Model, Mount, body_frames, body_velocities, centre_of_mass
 
 
@@ -79,10 +80,7 @@ def released(
     >>> let_go.time
     0.2
     """
-    instance("what is released", swung, Swing)
-    instance("mount", mount, Mount)
-    if swung.model != mount.held:
-        raise SomersaultError(f"this is a swing of {swung.model.name}, not of the mount given")
+    _require_of(swung, mount)
     q, u = swung.q[-1], swung.u[-1]
     turn, origin, omega, velocity = _base_motion(mount, q, u)
     rider = mount.rider
@@ -107,6 +105,53 @@ def released(
         joints=takeoffs,
     )
     return Release(takeoff, centre, float(swung.times[-1]))
+
+
+def ridden(swung: Swing, mount: Mount) -> Recording:
+    """The swing as a motion of the rider, who is free afterwards.
+
+    Parameters
+    ----------
+    swung : Swing
+        Of `mount.held`.
+    mount : Mount
+
+    Returns
+    -------
+    Recording
+        Of `mount.rider`, which can be joined with its flight.
+
+    Raises
+    ------
+    SomersaultError
+        For the swing of another model.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> none = (0.0, 0.0, 0.0)
+    >>> bar = so.Joint("bar", "hinge", axis=(0.0, 1.0, 0.0))
+    >>> clamp = so.Body("clamp", -1, 0.0, none, (none, none, none), joints=(bar,))
+    >>> mount = so.mounted(so.load("doll"), clamp, position=(0.0, 0.0, -0.3))
+    >>> so.flight.ridden(so.swing(mount.held, {"bar": 2.0}, 0.2, samples=3), mount).model.name
+    'doll'
+    """
+    _require_of(swung, mount)
+    turns, feet = body_frames(mount.held, swung.q)
+    carriers, rider = turns[:, mount.place], mount.rider
+    arms = carriers @ np.array(mount.position)
+    attitudes = np.stack([
+        quaternion_from_matrix(turn @ np.array(mount.rotation)) for turn in carriers
+    ])  # fmt: skip
+    places = [mount.held.coordinate_slice(joint.name).start for joint in rider.joints]
+    return Recording(rider, swung.times, feet[:, mount.place] + arms, attitudes, swung.q[:, places])
+
+
+def _require_of(swung: Swing, mount: Mount) -> None:
+    instance("what is released", swung, Swing)
+    instance("mount", mount, Mount)
+    if swung.model != mount.held:
+        raise SomersaultError(f"this is a swing of {swung.model.name}, not of the mount given")
 
 
 @lru_cache(maxsize=8)

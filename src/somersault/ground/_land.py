@@ -34,8 +34,8 @@ def land(
 ) -> Stance:
     """A flight's landing: feet on the contact of MuJoCo, joints that do what a law says.
 
-    It begins where a foot first reaches the floor, the plane of height 0, and ends when the gymnast
-    has stood still for two seconds, or when anything but the feet touches the floor.
+    It begins where the body first reaches the floor, the plane of height 0. It ends when the
+    gymnast has stood still for two seconds, or when anything but the feet touches the floor.
 
     Parameters
     ----------

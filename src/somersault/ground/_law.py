@@ -6,6 +6,11 @@ from dataclasses import dataclass
 
 from somersault.ground._gymnast import positive
 
+_MAY_BE_ZERO = (
+    "height_stiffness", "height_damping", "place_stiffness", "place_damping", "attitude_stiffness",
+    "momentum_damping", "lean", "arms", "arm_stiffness", "arm_damping", "margin",
+)  # fmt: skip
+
 
 @dataclass(frozen=True)
 class LandingLaw:
@@ -63,17 +68,17 @@ class LandingLaw:
     """
 
     braking: float = 40.0
-    lowest: float = 0.5
-    height: float = 0.9
+    lowest: float = 0.45
+    height: float = 0.93
     rise: float = 0.8
     height_stiffness: float = 60.0
     height_damping: float = 15.0
     place_stiffness: float = 15.0
     place_damping: float = 8.0
     attitude_stiffness: float = 20.0
-    momentum_damping: float = 9.0
+    momentum_damping: float = 16.0
     attitude_error: float = 0.3
-    attitude_weight: float = 0.1
+    attitude_weight: float = 0.05
     lean: float = 0.8
     lean_depth: float = 0.4
     lean_rate: float = 1.0
@@ -87,4 +92,4 @@ class LandingLaw:
     most_force: float = 8.8
 
     def __post_init__(self) -> None:
-        positive(self, "a landing law", "lean", "arms", "margin")
+        positive(self, "a landing law", _MAY_BE_ZERO)

@@ -12,7 +12,7 @@ from somersault._core.errors import SomersaultError
 from somersault.ground._gymnast import Floor, Gymnast
 from somersault.model import mjcf
 
-STEP = 0.0005
+STEP = 0.001
 """Of the simulation, s."""
 GRAVITY = 9.81
 """m/s²."""
@@ -92,10 +92,6 @@ class Machine:
         self.soles = [int(m.geom(name).id) for name in ("heel", "toes")]
         self.floor = int(m.geom("floor").id)
         self.rounding = feet.rounding
-
-    def gap(self, data: Any) -> float:
-        """Of heel or toes, whichever is lower, above the floor, m."""
-        return min(float(data.geom_xpos[sole][2]) for sole in self.soles) - self.rounding
 
     def fallen_on(self, data: Any) -> str | None:
         """The body besides the feet that touches the floor."""

@@ -1,4 +1,4 @@
-"""The moment of a flight in which a foot first reaches the floor."""
+"""The moment of a flight in which the body first reaches the floor."""
 
 from __future__ import annotations
 
@@ -48,28 +48,24 @@ def touchdown(flight: Flight, machine: Machine) -> Touchdown:
     u[:, BASE - 1] = flight.angular_velocity[:, 1]
     data = mujoco.MjData(m)
 
-    def above(position: Array) -> float:
+    def touches(position: Array) -> bool:
         data.qpos[:] = position
-        mujoco.mj_kinematics(m, data)
-        return machine.gap(data)
+        mujoco.mj_fwdPosition(m, data)
+        return bool(data.ncon)
 
-    gaps = np.array([above(one) for one in q])
-    coming = np.flatnonzero((gaps[:-1] > 0) & (gaps[1:] <= 0))
+    down = np.array([touches(one) for one in q])
+    coming = np.flatnonzero(~down[:-1] & down[1:])
     if not len(coming):
-        why = (
-            f"the feet begin {-gaps[0]:.3g} m below the floor; start higher"
-            if gaps[0] <= 0
-            else f"the feet stay {gaps.min():.3g} m above the floor; let it fly longer"
-        )
-        raise SomersaultError(f"this flight has no touchdown: {why}")
+        why = "begins in the floor; start higher" if down[0] else "stays above it; fly on"
+        raise SomersaultError(f"this flight does not come down to the floor: it {why}")
     k = int(coming[0])
     before, after = 0.0, 1.0
     for _ in range(_BISECTIONS):
         middle = (before + after) / 2
-        if above(q[k] + middle * (q[k + 1] - q[k])) > 0:
-            before = middle
-        else:
+        if touches(q[k] + middle * (q[k + 1] - q[k])):
             after = middle
+        else:
+            before = middle
     time, position, rate = (x[k] + before * (x[k + 1] - x[k]) for x in (flight.times, q, u))
     # The base goes as the centre of mass, which falls, has it.
     data.qpos[:] = position
