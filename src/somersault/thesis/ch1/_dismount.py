@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -199,7 +199,8 @@ def _draw(found: dict[str, Outcomes], share: dict[str, xr.Dataset]) -> Figure:
     from somersault.view import style as look
 
     picture = look.figure(10.0, 5.6)
-    top, bottom = np.ravel(picture.subfigures(2, 1, height_ratios=(1, 1.7)))
+    parts: Any = picture.subfigures(2, 1, height_ratios=(1, 1.7))
+    top, bottom = parts
     row, film, go = top.subplots(), _film(WITH), RELEASE + _SHOWN.later
     touch = float(go + dismount(CASES[WITH], _SHOWN).stance.times[0])
     moments = [0.7, go, 1.6, 1.8, 2.0, 2.2, 2.4, touch, touch + 0.2, touch + 2.0]

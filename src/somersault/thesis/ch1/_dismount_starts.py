@@ -145,7 +145,10 @@ def starts() -> tuple[Start, ...]:
     """The same for all cases."""
     drawn = np.random.default_rng(_SEED).standard_normal((STARTS, 4))
     drawn = drawn * (*SCATTER, *MISJUDGED) + (0.0, 1.0, 0.0, 0.0)
-    return tuple(Start(*row, float(k)) for k, row in enumerate(drawn.tolist()))
+    return tuple(
+        Start(later, faster, momentum, time, float(k))
+        for k, (later, faster, momentum, time) in enumerate(drawn.tolist())
+    )
 
 
 @dataclass(frozen=True, eq=False)
