@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
-from somersault._core.checks import file_path, instance
+from somersault._core.checks import file_path, instance, shown
 from somersault._core.errors import SomersaultError
 from somersault._core.hdf5 import require_readable
 from somersault._core.numbers import floats
@@ -172,9 +172,16 @@ def joined(histories: Sequence[History], clocks: ArrayLike) -> Recording:
     >>> so.history.joined([up, up], clocks=[0.0, 0.5]).times[[0, -1]].tolist()
     [0.0, 1.0]
     """
-    row = list(histories)
+    try:
+        row = list(histories)
+    except TypeError:
+        row = []
+    if not row or not all(hasattr(one, "joint_coordinates") for one in row):
+        raise SomersaultError(
+            f"histories must be a list of flights, swings or recordings, and is {shown(histories)}"
+        )
     begin = floats("clocks", clocks)
-    if not row or begin.shape != (len(row),) or not np.all(np.isfinite(begin)):
+    if begin.shape != (len(row),) or not np.all(np.isfinite(begin)):
         raise SomersaultError(f"clocks must be {len(row)} finite numbers, one for each history")
     if any(one.model != row[0].model for one in row):
         raise SomersaultError("only histories of the same model can be joined; give those of one")
