@@ -22,6 +22,7 @@ from somersault import (
     designs,
     ensembles,
     flight,
+    ground,
     laws,
     model,
     motion,
@@ -50,6 +51,24 @@ TAKEOFF = so.Takeoff(spin=5.0)
 @cache
 def furrer() -> so.Model:
     return so.load("furrer")
+
+
+@cache
+def fallen() -> so.Flight:
+    """A gymnast seen from the side who comes down on the feet."""
+    bent = {"shoulder_flexion": 1.4, "hip_flexion": 0.5, "knee": 0.6, "ankle": 1.87}
+    joints = {name: so.JointTakeoff.locked(angle=x) for name, x in bent.items()}
+    takeoff = so.Takeoff(somersault=0.2, position=(0.0, 0.0, 1.1), joints=joints)
+    body = so.sagittal(so.athlete(1.67, 64, knees=True, ankles=True))
+    return so.fly(body, takeoff, 0.3, gravity=(0.0, 0.0, -9.81))
+
+
+def _landed_with(part: str, kind: Call) -> Call:
+    def landed(**given: Any) -> ground.Stance:
+        who = ground.Gymnast(fallen().model, **{part: kind(**given)})
+        return ground.land(fallen(), gymnast=who, duration=0.02)
+
+    return landed
 
 
 def fed() -> st.DelayedFeedback:
@@ -1135,6 +1154,11 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
             "angles": np.zeros((2, 3)),
         },
     ),
+    "flight.ridden": lambda: (flight.ridden, {"swung": swung(), "mount": mount()}),
+    "history.joined": lambda: (
+        so.history.joined,
+        {"histories": [flown(), flown()], "clocks": [0.0, 9.0]},
+    ),
     "history.read_recording": lambda: (
         so.read_recording,
         {"path": "recorded.nc", "model": furrer()},
@@ -1259,6 +1283,38 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
         },
     ),
     "view.time_histories": lambda: (view.time_histories, {"history": flown(), "title": ""}),
+    # --- landings
+    "ground.Feet": lambda: (_landed_with("feet", ground.Feet), vars(ground.Feet())),
+    "ground.Floor": lambda: (
+        lambda **given: ground.land(fallen(), floor=ground.Floor(**given), duration=0.02),
+        vars(ground.Floor()),
+    ),
+    "ground.Gymnast": lambda: (
+        lambda **given: ground.land(fallen(), gymnast=ground.Gymnast(**given), duration=0.02),
+        vars(ground.Gymnast(fallen().model)),
+    ),
+    "ground.LandingLaw": lambda: (
+        lambda **given: ground.land(fallen(), law=ground.LandingLaw(**given), duration=0.02),
+        vars(ground.LandingLaw()),
+    ),
+    "ground.Stance.save": lambda: (
+        ground.land(fallen(), duration=0.02).save,
+        {"path": "stance.nc"},
+    ),
+    "ground.Strength": lambda: (
+        _landed_with("strength", ground.Strength),
+        vars(ground.Strength()),
+    ),
+    "ground.land": lambda: (
+        ground.land,
+        {
+            "flight": fallen(),
+            "gymnast": ground.Gymnast(fallen().model),
+            "floor": ground.Floor(),
+            "law": ground.LandingLaw(),
+            "duration": 0.02,
+        },
+    ),
     # --- robots
     **{
         f"robot.{name}": _table(name)

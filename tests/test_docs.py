@@ -13,7 +13,17 @@ import pytest
 import somersault
 
 DOCS = Path(__file__).parents[1] / "docs"
-QUICK = ("extending", "flight", "models", "motions", "maneuvers", "doll", "laws", "design")
+QUICK = (
+    "extending",
+    "flight",
+    "models",
+    "motions",
+    "maneuvers",
+    "doll",
+    "laws",
+    "design",
+    "landings",
+)
 SLOW = ("ensembles", "robots", "seeing", "stability", "twisting")
 RUN = (*QUICK, *(pytest.param(page, marks=pytest.mark.slow) for page in SLOW))
 BLOCK = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)

@@ -272,6 +272,7 @@ def test_every_entry_runs_and_explains_what_does_not_hold(tmp_path):
         "gentle.rate",  # bounded torques do not twist as fast as the thesis's motion
         "ch3-parts.window",  # a servo that lands right hardly needs it
         "sec7-2.lasting",  # arms against a slow spin go where springs do not hold the twist
+        "sec1-1-dismount.noise",  # noisy senses and a misjudged time cost a third of the landings
         "sec1-1.twist",  # the twist alone, and the twist rate alone, stabilise nothing
         "sec7-4.rate",
         "sec3-3.derivative",  # a factor of 2 for 4

@@ -19,6 +19,9 @@ from . import (
     flight as flight,
 )
 from . import (
+    ground as ground,
+)
+from . import (
     history as history,
 )
 from . import (

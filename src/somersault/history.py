@@ -7,14 +7,16 @@ them knows nothing else.
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
-from somersault._core.checks import file_path, instance
+from somersault._core.checks import file_path, instance, shown
 from somersault._core.errors import SomersaultError
 from somersault._core.hdf5 import require_readable
 from somersault._core.numbers import floats
@@ -138,6 +140,74 @@ def summary(history: History) -> str:
     return (
         f"{type(history).__name__} of {history.model.name}: {len(history.times)} samples, "
         f"{first:g} to {last:g} s"
+    )
+
+
+def joined(histories: Sequence[History], clocks: ArrayLike) -> Recording:
+    """One recording of several histories of the same body, as of a swing, a flight and a landing.
+
+    Each is cut off where the next one begins. Whole turns that a history does not know of are those
+    of the one before.
+
+    Parameters
+    ----------
+    histories : sequence of History
+        One after another.
+    clocks : array_like, (histories,)
+        What the recording's clock shows when that of each history shows zero, s.
+
+    Returns
+    -------
+    Recording
+
+    Raises
+    ------
+    SomersaultError
+        For different models, and histories that do not begin one after another.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> up = so.fly("book", so.Takeoff(spin=3.0), 0.5)
+    >>> so.history.joined([up, up], clocks=[0.0, 0.5]).times[[0, -1]].tolist()
+    [0.0, 1.0]
+    """
+    try:
+        row = list(histories)
+    except TypeError:
+        row = []
+    if not row or not all(hasattr(one, "joint_coordinates") for one in row):
+        raise SomersaultError(
+            f"histories must be a list of flights, swings or recordings, and is {shown(histories)}"
+        )
+    begin = floats("clocks", clocks)
+    if begin.shape != (len(row),) or not np.all(np.isfinite(begin)):
+        raise SomersaultError(f"clocks must be {len(row)} finite numbers, one for each history")
+    if any(one.model != row[0].model for one in row):
+        raise SomersaultError("only histories of the same model can be joined; give those of one")
+    times = [one.times + clock for one, clock in zip(row, begin.tolist(), strict=True)]
+    starts = [first[0] for first in times]
+    if np.any(np.diff(starts) <= 0):
+        raise SomersaultError("joined histories must begin one after another; sort them")
+    kept = [
+        clock < end if end is not None else np.full(clock.shape, True)
+        for clock, end in zip(times, [*starts[1:], None], strict=True)
+    ]
+
+    def together(parts: list[Array]) -> Array:
+        return np.concatenate([part[keep] for part, keep in zip(parts, kept, strict=True)])
+
+    turned: list[Array] = []
+    for one, keep in zip(row, kept, strict=True):
+        ahead = turned[-1][-1] - one.angles[0] if turned else np.zeros(3)
+        turned.append(one.angles[keep] + 2 * np.pi * np.round(ahead / (2 * np.pi)))
+    return Recording(
+        row[0].model,
+        together(times),
+        together([one.base_position for one in row]),
+        together([one.base_quaternion for one in row]),
+        together([one.joint_coordinates for one in row]),
+        np.concatenate(turned),
     )
 
 

@@ -23,7 +23,7 @@ from somersault.flight._principal import (
     rigid_continuation,
 )
 from somersault.flight._prop import Prop
-from somersault.flight._release import Release, released
+from somersault.flight._release import Release, released, ridden
 from somersault.flight._replay import Replay
 from somersault.flight._report import ENDINGS, Report, landing_error, landing_target
 from somersault.flight._sensitivity import sensitivity, transition
@@ -71,6 +71,7 @@ __all__ = [
     "principal_attitude",
     "principal_axes_along",
     "released",
+    "ridden",
     "rigid_continuation",
     "sensitivity",
     "swing",

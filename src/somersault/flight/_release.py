@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,8 @@ from somersault.dynamics import Equations
 from somersault.flight._swing import Swing
 from somersault.flight._takeoff import Takeoff
 from somersault.flight.behaviours import JointTakeoff
-from somersault.model import Joint, Mount, body_frames, body_velocities, centre_of_mass
+from somersault.history import Recording
+from somersault.model import Joint, Model, Mount, body_frames, body_velocities, centre_of_mass
 
 
 @dataclass(frozen=True)
@@ -78,17 +80,14 @@ def released(
     >>> let_go.time
     0.2
     """
-    instance("what is released", swung, Swing)
-    instance("mount", mount, Mount)
-    if swung.model != mount.held:
-        raise SomersaultError(f"this is a swing of {swung.model.name}, not of the mount given")
+    _require_of(swung, mount)
     q, u = swung.q[-1], swung.u[-1]
     turn, origin, omega, velocity = _base_motion(mount, q, u)
     rider = mount.rider
     places = [mount.held.coordinate_slice(joint.name).start for joint in rider.joints]
     own, own_rates = q[places], u[places]
     still = np.concatenate([omega, velocity, own_rates])
-    linear = Equations(rider).momentum(own, still)[3:] / rider.mass
+    linear = _equations(rider).momentum(own, still)[3:] / rider.mass
     setups = by_name("joints", joints)
     for name, setup in setups.items():
         instance(f"takeoff of joint {name}", setup, JointTakeoff)
@@ -106,6 +105,59 @@ def released(
         joints=takeoffs,
     )
     return Release(takeoff, centre, float(swung.times[-1]))
+
+
+def ridden(swung: Swing, mount: Mount) -> Recording:
+    """The swing as a motion of the rider, who is free afterwards.
+
+    Parameters
+    ----------
+    swung : Swing
+        Of `mount.held`.
+    mount : Mount
+
+    Returns
+    -------
+    Recording
+        Of `mount.rider`, which can be joined with its flight.
+
+    Raises
+    ------
+    SomersaultError
+        For the swing of another model.
+
+    Examples
+    --------
+    >>> import somersault as so
+    >>> none = (0.0, 0.0, 0.0)
+    >>> bar = so.Joint("bar", "hinge", axis=(0.0, 1.0, 0.0))
+    >>> clamp = so.Body("clamp", -1, 0.0, none, (none, none, none), joints=(bar,))
+    >>> mount = so.mounted(so.load("doll"), clamp, position=(0.0, 0.0, -0.3))
+    >>> so.flight.ridden(so.swing(mount.held, {"bar": 2.0}, 0.2, samples=3), mount).model.name
+    'doll'
+    """
+    _require_of(swung, mount)
+    turns, feet = body_frames(mount.held, swung.q)
+    carriers, rider = turns[:, mount.place], mount.rider
+    arms = carriers @ np.array(mount.position)
+    attitudes = np.stack([
+        quaternion_from_matrix(turn @ np.array(mount.rotation)) for turn in carriers
+    ])  # fmt: skip
+    places = [mount.held.coordinate_slice(joint.name).start for joint in rider.joints]
+    return Recording(rider, swung.times, feet[:, mount.place] + arms, attitudes, swung.q[:, places])
+
+
+def _require_of(swung: Swing, mount: Mount) -> None:
+    instance("what is released", swung, Swing)
+    instance("mount", mount, Mount)
+    if swung.model != mount.held:
+        raise SomersaultError(f"this is a swing of {swung.model.name}, not of the mount given")
+
+
+@lru_cache(maxsize=8)
+def _equations(model: Model) -> Equations:
+    """Compiled once for all that is let go."""
+    return Equations(model)
 
 
 def _base_motion(mount: Mount, q: Array, u: Array) -> tuple[Array, Array, Array, Array]:

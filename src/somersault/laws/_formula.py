@@ -8,7 +8,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import casadi as ca
@@ -123,17 +123,10 @@ class Formula:
             )
         return tree
 
-    @cached_property
+    @property
     def names(self) -> frozenset[str]:
         """Those of the numbers that it follows from."""
-        found: set[str] = set()
-
-        def note(name: str) -> float:
-            found.add(name)
-            return 1.0
-
-        self._value(self._tree, note)
-        return frozenset(found)
+        return _names(self)
 
     def value(self, known: Mapping[str, Any]) -> Any:
         """Its value.
@@ -254,6 +247,19 @@ class Formula:
         except OverflowError:
             pass
         raise SomersaultError(f"the law {self.text[:40]!r} has a number that is too great")
+
+
+@lru_cache(maxsize=256)
+def _names(formula: Formula) -> frozenset[str]:
+    """Those in a formula, read once however often it is written."""
+    found: set[str] = set()
+
+    def note(name: str) -> float:
+        found.add(name)
+        return 1.0
+
+    formula._value(formula._tree, note)
+    return frozenset(found)
 
 
 def _is_function(part: ast.AST, node: ast.AST) -> bool:

@@ -1,5 +1,5 @@
-"""Chapter 1, the introduction: three techniques in the air, a compliant twisting somersault, and an
-active layout."""
+"""Chapter 1, the introduction: three techniques in the air, a compliant twisting somersault, an
+active layout, and a dismount."""
 
 from functools import partial
 
@@ -16,5 +16,6 @@ CHAPTER = Chapter(
             "fig1-4", "Figure 1-4: a twisting somersault by torques alone", "_open_loop.fig_1_4"
         ),
         _entry("sec1-1", "§1.1.1: a layout that the arms hold", "_stabiliser.stabiliser"),
+        _entry("sec1-1-dismount", "§1.1.1: a dismount from the high bar", "_dismount.dismounts"),
     ),
 )
