@@ -80,7 +80,7 @@ def test_a_body_at_rest_stands(pose: tuple[float, float, float], ahead: float) -
 @pytest.mark.parametrize(
     ("fallen", "ahead"),
     [
-        *((0.2, x) for x in (-0.08, -0.04, 0.0, 0.04, 0.08)),
+        *((0.2, x) for x in (-0.06, -0.03, 0.0, 0.04, 0.08)),
         *((0.5, x) for x in (-0.06, -0.03, 0.0, 0.04, 0.08)),
         *((1.0, x) for x in (-0.04, 0.0, 0.04, 0.08)),
     ],
