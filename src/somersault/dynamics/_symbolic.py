@@ -185,6 +185,44 @@ class SymbolicEquations:
         value = ca.jacobian(flat, expression.arguments[argument])
         return Expression(f"{name}_by_{argument}", expression.arguments, value)
 
+    def casadi(self, name: str) -> ca.Function:
+        """A quantity as a function of CasADi's, for optimal control of one's own.
+
+        It takes numbers, SX or MX, is differentiated as any other, and needs nothing of this
+        package once it is there: `function.save`, and `casadi.CodeGenerator`, write it to a file.
+
+        Parameters
+        ----------
+        name
+            One of `QUANTITIES`.
+
+        Returns
+        -------
+        casadi.Function
+            Its inputs are named as the arguments of the method of that name, without those that
+            are empty: q, v, a, torques, gravity, and `parameters` where some stayed open; those
+            that are left out in a call by name are zero, parameters too. Its output is called as
+            the quantity.
+
+        Raises
+        ------
+        SomersaultError
+            For any other name, and for "inertia" of a fixed base.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> momentum = so.Equations("furrer").casadi("momentum")
+        >>> momentum
+        Function(momentum:(q[2],v[8])->(momentum[6]) SXFunction)
+        >>> momentum(q=[1.4, -1.4], v=[0, 8.64, 0, 0, 0, 0, 0, 0])["momentum"].shape
+        (6, 1)
+        """
+        expression = self.expression(name)
+        given = {n: symbol for n, symbol in expression.arguments.items() if symbol.numel()}
+        value = ca.cse(ca.densify(expression.value))
+        return ca.Function(name, [*given.values()], [value], [*given], [name])
+
     # ------------------------------------------------------------- the quantities, symbolic
 
     def _split(self, vector: Any) -> tuple[Vec, Vec, Vec]:
