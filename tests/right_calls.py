@@ -26,6 +26,7 @@ from somersault import (
     laws,
     model,
     motion,
+    planning,
     rigid,
     robot,
     spec,
@@ -154,6 +155,11 @@ def planned() -> ensembles.Plan:
 
 
 @cache
+def raised() -> planning.Plan:
+    return so.plan(**PLAN)
+
+
+@cache
 def charted() -> Any:
     return st.chart(**CHART)
 
@@ -163,6 +169,26 @@ def locus() -> Any:
     return st.root_locus(**LOCUS)
 
 
+PLAN = {
+    "model": "furrer",
+    "somersaults": 1,
+    "twists": 0,
+    "torque": 60.0,
+    "duration": (0.5, 1.5),
+    "joints": {"shoulder": (0.2, 2.8)},
+    "start": {"shoulder": 2.8},
+    "end": {},
+    "rest_at_end": False,
+    "takeoff": {"spin": (2.0, 9.0)},
+    "landing": {"tilt": 0.0},
+    "aloft": {"tilt": (-1.0, 1.0)},
+    "fastest": None,
+    "effort": 0.01,
+    "nodes": 6,
+    "starts": 1,
+    "seed": 0,
+    "processes": 1,
+}
 NORMAL = so.Vary(adds_to="takeoff.tilt", normal=(0.0, 0.1))
 CHART = {
     "model": "furrer",
@@ -1163,6 +1189,9 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
         so.read_recording,
         {"path": "recorded.nc", "model": furrer()},
     ),
+    # --- planning
+    "planning.plan": lambda: (so.plan, PLAN),
+    "planning.Plan.fly": lambda: (raised().fly, {"samples": 3}),
     # --- dynamics
     "dynamics.Equations": lambda: (
         so.Equations,
@@ -1176,6 +1205,7 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
         equations().evaluate,
         {"expression": equations().expression("mass_matrix"), "q": [0.1, 0.2]},
     ),
+    "dynamics.Equations.casadi": lambda: (equations().casadi, {"name": "mass_matrix"}),
     "dynamics.Equations.expression": lambda: (equations().expression, {"name": "mass_matrix"}),
     "dynamics.Equations.kernel": lambda: (
         equations().kernel,

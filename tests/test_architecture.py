@@ -13,8 +13,8 @@ import somersault
 SOURCE = Path(somersault.__file__).parent
 ROOMS = [
     "_core", "spec", "attitude", "simulation", "rigid", "model", "engine", "laws", "dynamics",
-    "motion", "history", "stability", "view", "flight", "ground", "robot", "ensembles", "designs",
-    "thesis", "cli",
+    "motion", "history", "stability", "view", "flight", "planning", "ground", "robot", "ensembles",
+    "designs", "thesis", "cli",
 ]  # fmt: skip
 MOST_LINES = 400
 

@@ -23,6 +23,7 @@ QUICK = (
     "laws",
     "design",
     "landings",
+    "planning",
 )
 SLOW = ("ensembles", "robots", "seeing", "stability", "twisting")
 RUN = (*QUICK, *(pytest.param(page, marks=pytest.mark.slow) for page in SLOW))

@@ -22,7 +22,7 @@ import somersault
 SOURCE = Path(somersault.__file__).parent
 COMPLETE = (  # rooms whose public calls say all that they should, and whose examples run
     "attitude", "dynamics", "engine", "ensembles", "flight", "flight.behaviours",
-    "history", "model", "motion", "rigid", "spec", "stability", "thesis", "view",
+    "history", "model", "motion", "planning", "rigid", "spec", "stability", "thesis", "view",
 )  # fmt: skip
 FOR_USERS = ("attitude", "rigid", "stability")  # in which every call needs an example
 EXEMPLARY = sorted(

@@ -34,6 +34,9 @@ from . import (
     motion as motion,
 )
 from . import (
+    planning as planning,
+)
+from . import (
     rigid as rigid,
 )
 from . import (
@@ -194,6 +197,9 @@ from .motion import (
 )
 from .motion import (
     sampled_motion as sampled_motion,
+)
+from .planning import (
+    plan as plan,
 )
 from .stability import LinearSpin as LinearSpin
 from .stability import Mode as Mode

@@ -23,6 +23,7 @@ from somersault.attitude._angles import (
     cayley_klein,
     direction_cosines,
     quaternion_from_angles,
+    sequence_rates,
     unwrapped_angles,
 )
 from somersault.attitude._axes import AXES, Axes, as_axes, from_sequence, in_sequence, side
@@ -51,6 +52,7 @@ __all__ = [
     "quaternion_from_angles",
     "quaternion_from_matrix",
     "quaternion_product",
+    "sequence_rates",
     "side",
     "unwrapped_angles",
 ]

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -196,11 +199,39 @@ def angle_rates(angles: ArrayLike, omega: ArrayLike, axes: Axes = AXES) -> Array
     """
     angles, omega = _vectors(angles=angles, omega=omega)
     _, tilt, twist = np.moveaxis(angles, -1, 0)
-    w1, w2, w3 = in_sequence(list(np.moveaxis(omega, -1, 0)), axes)
-    somersaulting = (np.sin(twist) * w1 + np.cos(twist) * w2) / np.cos(tilt)
-    tilting = np.cos(twist) * w1 - np.sin(twist) * w2
-    rates = np.stack([somersaulting, tilting, w3 + np.sin(tilt) * somersaulting], -1)
-    return _signed(rates, axes)
+    sines = (np.sin(tilt), np.cos(tilt)), (np.sin(twist), np.cos(twist))
+    return np.stack(sequence_rates(*sines, list(np.moveaxis(omega, -1, 0)), axes), -1)
+
+
+def sequence_rates(
+    tilt: Sequence[Any], twist: Sequence[Any], omega: Sequence[Any], axes: Axes = AXES
+) -> list[Any]:
+    """`angle_rates` of numbers, arrays or symbols.
+
+    Parameters
+    ----------
+    tilt, twist : sequence of two
+        Sine and cosine of either angle.
+    omega : sequence of three
+        Angular velocity in body axes, rad/s.
+    axes : tuple of int
+        The body axes that the angles are about.
+
+    Returns
+    -------
+    list of three
+        (Φ̇, Θ̇, Ψ̇), rad/s.
+
+    Examples
+    --------
+    >>> from somersault.attitude import sequence_rates
+    >>> sequence_rates((0.0, 1.0), (0.0, 1.0), [0.1, 5.0, 0.2])
+    [5.0, 0.1, 0.2]
+    """
+    (sine, cosine), (s, c) = tilt, twist
+    w1, w2, w3 = in_sequence(omega, axes)
+    somersaulting = (s * w1 + c * w2) / cosine
+    return [side(axes) * somersaulting, c * w1 - s * w2, w3 + sine * somersaulting]
 
 
 def cayley_klein(quaternion: ArrayLike, axes: Axes = AXES) -> tuple[Array, Array]:

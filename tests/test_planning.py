@@ -1,0 +1,260 @@
+"""Plans: what is asked is kept to, the flight agrees, and known optima come out."""
+
+from __future__ import annotations
+
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+import pytest
+
+import somersault as so
+from somersault.planning._gauss import gauss_legendre
+from somersault.planning._planned import _task
+from somersault.planning._search import Search
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+ARMS: dict[str, Any] = {
+    "torque": 60.0,
+    "joints": {"shoulder": (0.2, 2.8)},
+    "start": {"shoulder": 2.8},
+    "nodes": 20,
+    "starts": 2,
+    "processes": 1,
+}
+
+
+@pytest.fixture(scope="module")
+def twisted() -> so.planning.Plan:
+    """One somersault with a full twist, by the arms."""
+    return so.plan("furrer", 1, 1, **ARMS)
+
+
+# ------------------------------------------------------------------------ what is asked, and flown
+
+
+def test_what_is_asked_is_done(twisted: so.planning.Plan) -> None:
+    assert twisted.rotations["somersault"] == pytest.approx(1, abs=1e-6)
+    assert twisted.rotations["twist"] == pytest.approx(1, abs=1e-6)
+    assert 0.5 <= twisted.duration <= 1.5 + 1e-6
+    assert abs(twisted.torques).max() <= 60.0 + 1e-3
+    times = np.linspace(0, twisted.duration, 1001)
+    angles, rates, _ = twisted.motion.values(times)
+    assert twisted.motion.joints == ("left_shoulder", "right_shoulder")
+    signs = np.array([1, -1])
+    assert (angles * signs).min() >= 0.2 - 1e-6
+    assert (angles * signs).max() <= 2.8 + 1e-6
+    np.testing.assert_allclose(rates[0], 0, atol=1e-9)
+
+
+def test_the_flight_agrees(twisted: so.planning.Plan) -> None:
+    assert twisted.departure < 1e-4
+    landing = twisted.fly().landing
+    assert landing.somersault == pytest.approx(2 * pi, abs=1e-3)
+    assert landing.twist == pytest.approx(2 * pi, abs=1e-3)
+    assert landing.tilt == pytest.approx(0, abs=1e-3)
+
+
+def test_torques_are_those_of_the_flight(twisted: so.planning.Plan) -> None:
+    flown = twisted.fly(samples=twisted.times).joint_torques
+    np.testing.assert_allclose(twisted.torques, flown, atol=0.02)
+
+
+def test_mujoco_moves_the_joints_so_by_the_torques(twisted: so.planning.Plan) -> None:
+    """Forward dynamics of others, with the plan's torques at some of its nodes."""
+    flight = twisted.fly(samples=twisted.times)
+    _, _, accelerations = twisted.motion.values(twisted.times)
+    model = mujoco.MjModel.from_xml_string(so.model.mjcf(so.load("furrer")))
+    model.opt.gravity[:] = 0
+    data = mujoco.MjData(model)
+    for k in range(0, len(twisted.times), 4):
+        data.qpos[:] = [0, 0, 0, *flight.base_quaternion[k], *flight.joint_coordinates[k]]
+        rates = twisted.motion.values(twisted.times[k : k + 1])[1][0]
+        data.qvel[:] = [0, 0, 0, *flight.angular_velocity[k], *rates]
+        data.qfrc_applied[6:] = twisted.torques[k]
+        mujoco.mj_forward(model, data)
+        np.testing.assert_allclose(data.qacc[6:], accelerations[k], rtol=1e-4, atol=0.05)
+
+
+def test_more_nodes_agree_better() -> None:
+    """With twice as many the error falls to a sixty-fourth, if the plan stays the same."""
+    options = {**ARMS, "duration": 1.2, "starts": 1}
+    departures = [so.plan("furrer", 1, 1, **{**options, "nodes": n}).departure for n in (10, 20)]
+    assert departures[1] < departures[0] / 32
+
+
+def test_collocation_has_its_order() -> None:
+    """y' = cos t · y, whose solution is exp(sin t), collocated with more and more steps."""
+    errors = []
+    table = gauss_legendre(3)
+    assert table.order == 6
+    for count in (4, 8, 16):
+        step, y = 2.0 / count, 1.0
+        for k in range(count):
+            rate = np.cos((k + table.stages) * step)
+            stages = np.linalg.solve(np.eye(3) - step * table.inner * rate, np.full(3, y))
+            y += step * table.weights @ (rate * stages)
+        errors.append(abs(y - np.exp(np.sin(2.0))))
+    assert np.log2(np.divide(errors[:-1], errors[1:])) == pytest.approx(6, abs=0.3)
+
+
+@pytest.mark.slow
+def test_a_seed_gives_one_plan_whatever_the_processes(twisted: so.planning.Plan) -> None:
+    again = so.plan("furrer", 1, 1, **{**ARMS, "processes": 2})
+    assert again.angles.tobytes() == twisted.angles.tobytes()
+    assert again.attempts == twisted.attempts
+
+
+def test_a_plan_is_a_maneuver_like_any_other(twisted: so.planning.Plan, tmp_path: Path) -> None:
+    twisted.maneuver.save(tmp_path / "plan.toml")
+    landed = so.Maneuver.read(tmp_path / "plan.toml").fly().landing
+    assert landed.twist == twisted.fly().landing.twist
+    soft = twisted.maneuver.compliant(60.0, pose={"shoulder": 1.5}).fly().landing
+    assert soft.twist == pytest.approx(2 * pi, abs=0.01)  # by its motor tape
+
+
+def test_joints_that_do_not_move_are_locked() -> None:
+    options = {**ARMS, "joints": {"left_shoulder": (0.2, 2.8)}, "start": {"shoulder": 1.0}}
+    plan = so.plan("furrer", 1, 0.5, **options)
+    assert plan.motion.joints == ("left_shoulder",)
+    np.testing.assert_allclose(plan.fly().joint_coordinates[:, 1], -1.0, atol=1e-12)
+
+
+# ---------------------------------------------------------------------------- optima in closed form
+
+
+def rotors(inner: float, outer: float) -> so.Model:
+    """Two bodies that turn against each other about the axis of somersault."""
+
+    def moments(about: float) -> Any:
+        return ((2.0, 0, 0), (0, about, 0), (0, 0, 2.5))
+
+    hinge = so.Joint("hinge", "hinge", (0.0, 1.0, 0.0))
+    still = (0.0, 0.0, 0.0)
+    bodies = (
+        so.Body("inner", -1, 1.0, still, moments(inner)),
+        so.Body("outer", 0, 1.0, still, moments(outer), joints=(hinge,)),
+    )
+    return so.Model("rotors", True, bodies)
+
+
+def test_the_least_effort_is_a_cubic() -> None:
+    """With constant inertias, from rest to rest, ∫τ² is least along 3 s² − 2 s³."""
+    inner, outer, time, turns = 3.0, 2.0, 0.8, 0.1
+    plan = so.plan(
+        rotors(inner, outer), turns, 0, torque=100.0, duration=time, rest_at_end=True,
+        takeoff={"momentum": [0.0, 0.0, 0.0]}, nodes=10, starts=1, processes=1,
+    )  # fmt: skip
+    swing = -2 * pi * turns * (inner + outer) / outer
+    s = np.linspace(0, 1, 101)
+    angles, _, _ = plan.motion.values(s * time)
+    np.testing.assert_allclose(angles[:, 0], swing * (3 * s**2 - 2 * s**3), atol=1e-4)
+    reduced = inner * outer / (inner + outer)
+    effort = 12 * (reduced * swing) ** 2 / time**3 / 100.0**2
+    assert plan.attempts[0].objective == pytest.approx(effort, rel=1e-5)
+
+
+def test_the_most_rotation_takes_all_torque() -> None:
+    """With the joint's end free, the base turns furthest by one torque all the time."""
+    inner, outer, time, torque = 3.0, 2.0, 0.8, 5.0
+    plan = so.plan(
+        rotors(inner, outer), "most", 0, torque=torque, duration=time, effort=0.0,
+        takeoff={"momentum": [0.0, 0.0, 0.0]}, nodes=10, starts=1, processes=1,
+    )  # fmt: skip
+    turned = torque / inner * time**2 / 2
+    assert plan.angles[-1, 0] == pytest.approx(turned, rel=1e-6)
+    np.testing.assert_allclose(plan.torques, -torque, rtol=1e-4)
+
+
+# ------------------------------------------------------------------------------------- derivatives
+
+
+def test_derivatives_are_those_of_differences() -> None:
+    task = _task(
+        so.load("furrer"), 1, "most", 60.0, (0.5, 1.5), None, {"shoulder": 1.0}, None, False,
+        {"spin": (2.0, 9.0)}, None, None, 30.0, 0.01,
+    )  # fmt: skip
+    program = Search(task).grid(4).program
+    rng = np.random.default_rng(0)
+    x = rng.normal(scale=0.4, size=program.unknowns)
+    x[-1] = 1.1  # the duration
+    multipliers = rng.normal(size=len(program.low))
+    slopes = program.slopes(x)
+    shape = (len(program.low), program.unknowns)
+    jacobian, hessian = np.zeros(shape), np.zeros((program.unknowns,) * 2)
+    jacobian[program.jacobian.rows, program.jacobian.columns] = program.jacobian.values(slopes)
+    bends = program.hessian.values(program.curvatures(x, 0.7, multipliers))
+    hessian[program.hessian.rows, program.hessian.columns] = bends
+    hessian = np.triu(hessian) + np.triu(hessian, 1).T
+
+    def gradient(at: np.ndarray) -> np.ndarray:
+        own = program.slopes(at)
+        cost = np.zeros(program.unknowns)
+        cost[program.gradient.columns] = program.gradient.values(own)
+        slope = np.zeros(shape)
+        slope[program.jacobian.rows, program.jacobian.columns] = program.jacobian.values(own)
+        return 0.7 * cost + multipliers @ slope
+
+    for k in range(program.unknowns):
+        step = np.zeros(program.unknowns)
+        step[k] = 1e-6
+        ends = [program.constraints(y, program.outputs(y)) for y in (x + step, x - step)]
+        np.testing.assert_allclose((ends[0] - ends[1]) / 2e-6, jacobian[:, k], atol=2e-5)
+        bend = (gradient(x + step) - gradient(x - step)) / 2e-6
+        np.testing.assert_allclose(bend, hessian[k], rtol=1e-4, atol=1e-4)
+
+
+# ---------------------------------------------------------------------------------------- mistakes
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"duration": (1.5, 0.5)}, "duration goes from 1.5 to 0.5, which is empty"),
+        ({"duration": 0.0}, "duration must be positive"),
+        ({"joints": ["elbow"]}, "elbow"),
+        ({"joints": {"shoulder": (2.8, 0.2)}}, "joints shoulder goes from 2.8 to 0.2"),
+        ({"start": {"shoulder": 3.0}}, "start left_shoulder=3 is outside its range, 0.2 to 2.8"),
+        ({"end": {"shoulder": 0.1}}, "end left_shoulder=0.1 is outside its range"),
+        ({"torque": -5.0}, "torque must be a positive number"),
+        ({"torque": {"left_shoulder": 5.0}}, "torque of joint right_shoulder is missing"),
+        ({"twists": "many"}, "twists must be a number or 'most', and is 'many'"),
+        ({"somersaults": "most", "twists": "most"}, "cannot both be the most"),
+        ({"takeoff": {"lean": 1.0}}, "takeoff 'lean' is nothing there is"),
+        ({"takeoff": {"spin": 5.0, "momentum": [0, 1, 0]}}, "spin and momentum; give one"),
+        ({"landing": {"tilt": 1.2}}, "landing tilt is 1.2 rad, outside of -1 to 1 aloft"),
+        ({"aloft": {"tilt": (-2.0, 2.0)}}, "somersault and twist have no meaning"),
+        ({"model": so.load("furrer", base="planar")}, "is not free in space"),
+        ({"fastest": 0.0}, "fastest must be a positive rate"),
+        ({"nodes": 1}, "nodes must be a whole number from 4"),
+    ],
+)
+def test_a_mistake_is_a_sentence(given: dict[str, Any], said: str) -> None:
+    asked = {"model": "furrer", "somersaults": 1, "twists": 1, **ARMS, **given}
+    with pytest.raises(so.SomersaultError, match=r"^[^\n]*$") as mistake:
+        so.plan(**asked)
+    assert said in str(mistake.value)
+
+
+def test_torques_that_do_not_suffice_are_blamed() -> None:
+    with pytest.raises(so.SomersaultError, match="no plan found from the one start: ") as mistake:
+        so.plan("furrer", 1, 2, **{**ARMS, "torque": 1.0, "nodes": 10, "starts": 1})
+    assert "give more torque" in str(mistake.value)
+
+
+# --------------------------------------------------------------------------- the published acrobat
+
+
+@pytest.mark.slow
+def test_the_acrobat_twists_more_than_five_times() -> None:
+    """Bioptim's example, of which its authors report 5.31 rotations."""
+    import runpy
+
+    example = runpy.run_path(str(EXAMPLES / "plan_twist.py"))
+    acrobat = so.load(example["ACROBAT"], axes=(1, 2, 3))
+    plan = so.plan(acrobat, 1, "most", torque=100.0, nodes=100, starts=24, **example["ASKED"])
+    assert plan.rotations["twist"] > 5.2
+    assert plan.departure < 1e-3
+    assert abs(plan.fly(samples=plan.times).joint_torques).max() < 100.1
