@@ -12,7 +12,7 @@ import pytest
 
 import somersault as so
 from somersault.planning._gauss import gauss_legendre
-from somersault.planning._planned import _task
+from somersault.planning._request import requested
 from somersault.planning._search import Search
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -122,6 +122,33 @@ def test_joints_that_do_not_move_are_locked() -> None:
     np.testing.assert_allclose(plan.fly().joint_coordinates[:, 1], -1.0, atol=1e-12)
 
 
+def test_gears_springs_and_balls() -> None:
+    """A joint on a spring, one geared to it, and a ball that is locked: torques are what the flight
+    needs at both joints of the gears, less what spring and damper do."""
+    inertia = ((0.3, 0, 0), (0, 0.2, 0), (0, 0, 0.1))
+    along, centre = (1.0, 0.0, 0.0), (0.0, 0.0, -0.3)
+    up = so.Joint("up", "hinge", along, limits=(-3.0, 3.0), stiffness=5.0, damping=0.3)
+    low = so.Joint("low", "hinge", along, follows=so.model.Follow("up", 0.5, 0.1))
+    bodies = (
+        so.Body("trunk", -1, 30.0, (0.0, 0.0, 0.0), ((4.0, 0, 0), (0, 4.2, 0), (0, 0, 0.5))),
+        so.Body("arm", 0, 4.0, centre, inertia, position=(0.0, 0.2, 0.4), joints=(up,)),
+        so.Body("hand", 1, 2.0, centre, inertia, position=(0.0, 0.0, -0.5), joints=(low,)),
+        so.Body("other", 0, 4.0, centre, inertia, joints=(so.Joint("ball", "ball"),)),
+    )
+    plan = so.plan(
+        so.Model("geared", True, bodies), 1, 0.25, torque=80.0, landing={"tilt": (-0.3, 0.3)},
+        nodes=20, starts=1, processes=1,
+    )  # fmt: skip
+    assert plan.motion.joints == ("up",)
+    assert plan.departure < 1e-4
+    flight = plan.fly(samples=plan.times)
+    q, needed = flight.joint_coordinates, flight.joint_torques.to_numpy()
+    rates = plan.motion.values(plan.times)[1][:, 0]
+    np.testing.assert_allclose(q[:, 1], 0.1 + 0.5 * q[:, 0], atol=1e-12)
+    muscles = needed[:, 0] + 0.5 * needed[:, 1] + 5.0 * q[:, 0] + 0.3 * rates
+    np.testing.assert_allclose(plan.torques.to_numpy()[:, 0], muscles, atol=1e-4)
+
+
 # ---------------------------------------------------------------------------- optima in closed form
 
 
@@ -172,7 +199,7 @@ def test_the_most_rotation_takes_all_torque() -> None:
 
 
 def test_derivatives_are_those_of_differences() -> None:
-    task = _task(
+    task = requested(
         so.load("furrer"), 1, "most", 60.0, (0.5, 1.5), None, {"shoulder": 1.0}, None, False,
         {"spin": (2.0, 9.0)}, None, None, 30.0, 0.01,
     )  # fmt: skip
@@ -242,6 +269,12 @@ def test_torques_that_do_not_suffice_are_blamed() -> None:
     with pytest.raises(so.SomersaultError, match="no plan found from the one start: ") as mistake:
         so.plan("furrer", 1, 2, **{**ARMS, "torque": 1.0, "nodes": 10, "starts": 1})
     assert "give more torque" in str(mistake.value)
+
+
+def test_what_is_no_number_is_no_plan_either(capfd: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(so.SomersaultError, match="no plan found from the one start: "):
+        so.plan("furrer", 1, 1, **{**ARMS, "torque": 1e-300, "nodes": 6, "starts": 1})
+    assert capfd.readouterr() == ("", "")
 
 
 # --------------------------------------------------------------------------- the published acrobat

@@ -14,10 +14,8 @@ from somersault._core.errors import SomersaultError
 from somersault._core.numbers import as_floats, number
 from somersault.model import LIMIT_SLACK, Joint, Model, pose, sides, spread
 from somersault.planning._joints import Moving
-from somersault.planning._task import Range
+from somersault.planning._task import ANGLES, RATES, Range
 
-ANGLES = ("somersault", "tilt", "twist")
-RATES = ("spin", "tilt_rate", "twist_rate")
 MOST_TILT = 1.5  # rad: the angles have no meaning at π/2
 
 Ranged = float | Sequence[float] | Array

@@ -18,7 +18,12 @@ from somersault.planning._program import Program
 
 _TOLERANCE = 1e-6
 _KEPT = 1e-6  # by which a constraint may be missed
-_QUIET = {"print_time": False, "ipopt.print_level": 0, "ipopt.sb": "yes"}
+_QUIET = {
+    "print_time": False,
+    "show_eval_warnings": False,
+    "ipopt.print_level": 0,
+    "ipopt.sb": "yes",
+}
 Fill = Callable[[Sequence[Array], Sequence[Array | None]], None]
 _NO_MORE = {"no_nlp_grad": True, "calc_lam_p": False, "calc_multipliers": False}
 
@@ -106,11 +111,9 @@ class Solver:
                 raise self._raised[0]
         said = self._solver.stats()
         x = np.array(answer["x"]).ravel()
-        values = np.array(answer["g"]).ravel()
-        missed = np.maximum(program.low - values, values - program.high).max()
         return Outcome(
             x, float(answer["f"]), said["return_status"], max(int(said["iter_count"]), 0),
-            float(missed) if np.isfinite(missed) else np.inf,
+            float(program.missed(x).max()),
         )  # fmt: skip
 
     # ----------------------------------------------------------------- what IPOPT asks for

@@ -13,9 +13,8 @@ from somersault.attitude import unwrapped_angles
 from somersault.flight import Flight, JointTakeoff, Maneuver, Takeoff, prescribed
 from somersault.model import Model
 from somersault.motion import DEGREE, Motion, Path
-from somersault.planning._asked import ANGLES
 from somersault.planning._ipopt import Outcome
-from somersault.planning._task import Task
+from somersault.planning._task import ANGLES, Task
 from somersault.planning._transcription import Transcription
 
 if TYPE_CHECKING:

@@ -73,6 +73,14 @@ class Program:
         """What has bounds, with the outputs y of x."""
         return self.linear @ x + self.nonlinear @ y.ravel()
 
+    def missed(self, x: Array) -> Array:
+        """By how much each constraint is missed: not at all where negative, without end where the
+        outputs are no numbers."""
+        with np.errstate(invalid="ignore", over="ignore"):
+            values = self.constraints(x, self.outputs(x))
+            missed = np.maximum(self.low - values, values - self.high)
+        return np.nan_to_num(missed, nan=np.inf, posinf=np.inf, neginf=-np.inf)
+
     # ---------------------------------------------------------------------------- derivatives
 
     @cached_property

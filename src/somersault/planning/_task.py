@@ -10,6 +10,8 @@ from somersault._core.array import Array
 from somersault.model import Model
 from somersault.planning._joints import Moving
 
+ANGLES = ("somersault", "tilt", "twist")
+RATES = ("spin", "tilt_rate", "twist_rate")  # of these, at takeoff
 Range = tuple[float, float]
 
 

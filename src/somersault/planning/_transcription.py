@@ -13,7 +13,7 @@ from somersault.planning._gauss import gauss_legendre
 from somersault.planning._layout import Layout
 from somersault.planning._point import TURNING, Point
 from somersault.planning._program import Program
-from somersault.planning._task import Task
+from somersault.planning._task import ANGLES, RATES, Task
 
 STAGES = 3  # of collocation: order six
 
@@ -25,7 +25,7 @@ class Rows:
     Parameters
     ----------
     what : str
-        What they hold, in words.
+        What they hold.
     places : range
         Where they stand among all.
     names : tuple of str
@@ -128,7 +128,7 @@ def _joints_follow(c: _Constraints) -> None:
     layout = c.layout
     at_end = layout.along(np.array(1.0))
     for k, places in enumerate((layout.q, layout.v)):
-        rows = c.more("joints' paths", 0.0, 0.0, (layout.intervals, layout.joints))
+        rows = c.more("joint", 0.0, 0.0, (layout.intervals, layout.joints))
         c.linear.add(rows, places[1:], 1.0)
         for (which, end), weight in at_end[k].items():
             source = (layout.q, layout.v, layout.w)[which]
@@ -142,12 +142,12 @@ def _attitude_follows(c: _Constraints) -> None:
     shape = (layout.intervals, layout.stages, TURNING)
     begin = layout.angles[:-1]
     turning = c.output(layout.staged[:, :, None], np.arange(TURNING))  # (intervals, stages, 3)
-    rows = c.more("attitude", 0.0, 0.0, shape)
+    rows = c.more("attitude", 0.0, 0.0, shape, ANGLES)
     c.linear.add(rows, layout.within, 1.0)
     c.linear.add(rows, begin[:, None], -1.0)
     inner = tableau.inner[None, :, :, None]
     c.nonlinear.add(rows[:, :, None], turning[:, None], -step * inner)
-    rows = c.more("attitude", 0.0, 0.0, (layout.intervals, TURNING))
+    rows = c.more("attitude", 0.0, 0.0, (layout.intervals, TURNING), ANGLES)
     c.linear.add(rows, layout.angles[1:], 1.0)
     c.linear.add(rows, begin, -1.0)
     c.nonlinear.add(rows[:, None], turning, -step * tableau.weights[None, :, None])
@@ -165,13 +165,12 @@ def _torques(c: _Constraints, task: Task) -> None:
 def _takeoff(c: _Constraints, task: Task) -> None:
     """Rates of the angles, or the angular momentum, times T."""
     layout = c.layout
-    names = ("somersault", "tilt", "twist")
     if task.rates is not None:
         places = c.output(np.zeros(1, int), np.arange(TURNING))
-        _times_duration(c, "rate at takeoff", task.rates, places, c.nonlinear, names)
+        _times_duration(c, "takeoff", task.rates, places, c.nonlinear, RATES)
     if task.momentum is not None:
         axes = ("1", "2", "3")
-        _times_duration(c, "angular momentum", task.momentum, layout.momentum, c.linear, axes)
+        _times_duration(c, "momentum", task.momentum, layout.momentum, c.linear, axes)
 
 
 def _rates(c: _Constraints, task: Task) -> None:
@@ -182,7 +181,7 @@ def _rates(c: _Constraints, task: Task) -> None:
         fastest = np.tile(moving.fastest[bounded], layout.nodes)
         bounds = np.stack([-fastest, fastest], -1)
         names = tuple(moving.joints[k] for k in bounded)
-        _times_duration(c, "rate", bounds, layout.v[:, bounded].ravel(), c.linear, names)
+        _times_duration(c, "fastest", bounds, layout.v[:, bounded].ravel(), c.linear, names)
 
 
 def _times_duration(

@@ -7,9 +7,19 @@ import numpy as np
 from somersault.planning._ipopt import Outcome
 from somersault.planning._transcription import Transcription
 
+_WORDS = {
+    "joint": "where joints are to be",
+    "attitude": "the {} from takeoff to landing",
+    "torque": "the bounds of torque of {}",
+    "range": "the range of {}",
+    "fastest": "the greatest rate of {}",
+    "takeoff": "the {} at takeoff",
+    "momentum": "the angular momentum along axis {}",
+}
+
 
 def reason(grid: Transcription, outcome: Outcome) -> str:
-    """What the best of the starts that failed could not keep to.
+    """What the nearest of the starts that failed could not keep to.
 
     Parameters
     ----------
@@ -18,22 +28,10 @@ def reason(grid: Transcription, outcome: Outcome) -> str:
     outcome : Outcome
         The start's.
     """
-    program, x = grid.program, outcome.x
-    values = program.constraints(x, program.outputs(x))
-    missed = np.maximum(program.low - values, values - program.high)
-    missed = np.where(np.isfinite(missed), missed, 0.0)
-    worst = int(np.argmax(missed))
+    worst = int(np.argmax(grid.program.missed(outcome.x)))
     rows = next(rows for rows in grid.rows if worst in rows.places)
-    what = rows.what
-    if rows.names:
-        what = f"{what} of {rows.names[(worst - rows.places.start) % len(rows.names)]}"
+    name = rows.names[(worst - rows.places.start) % len(rows.names)] if rows.names else ""
     return (
-        f"{_BLAMED.get(rows.what, what)} cannot be kept to; give more torque, a longer flight, "
-        "wider ranges or a wider landing, or more starts"
+        f"the nearest misses {_WORDS[rows.what].format(name)}; give more torque, more time, wider "
+        "ranges, a wider landing, or more starts"
     )
-
-
-_BLAMED = {
-    "attitude": "what is asked of takeoff and landing",
-    "joints' paths": "where the joints are to be",
-}
