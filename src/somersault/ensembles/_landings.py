@@ -76,7 +76,9 @@ def landing_derivatives(
     *,
     step: float = 1e-4,
 ) -> xr.DataArray:
-    """How a landing changes with small changes at takeoff, to first order.
+    """How a landing changes with small changes at takeoff, by differences of flights.
+
+    `somersault.flight.sensitivity` gives the same as accurately as the flight itself.
 
     Parameters
     ----------
