@@ -293,7 +293,7 @@ def test_what_is_refused(call, said):
 def test_a_knot_at_takeoff_is_refused():
     arm = so.JointTakeoff.prescribed(times=[0.0, 0.2], angles=[1.4, 0.3])
     with pytest.raises(so.SomersaultError, match="no derivative with respect to joints"):
-        sensitivity(layout(0.3, joints={"shoulder": arm}), ["joints.shoulder.times.1"])
+        sensitivity(layout(0.3, joints={"left_shoulder": arm}), ["joints.left_shoulder.times.1"])
 
 
 def test_a_held_torque_has_derivatives_by_all_but_its_times():

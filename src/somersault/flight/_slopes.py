@@ -15,7 +15,7 @@ from somersault._core.array import Array
 
 _EIGHTH = np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280])  # weights of f(k h) − f(−k h), over h
 _SIXTH = np.array([3 / 4, -3 / 20, 1 / 60, 0.0])
-_SIZES = 0.25 ** np.arange(2, 8)  # of a number of order 1
+_SIZES = 0.25 ** np.arange(2, 10)  # of a number of order 1
 _GOOD = 1e-9
 
 
