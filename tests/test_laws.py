@@ -350,3 +350,55 @@ def test_ticks_are_not_missed() -> None:
         rates = 5 * np.cos(40 * t)
         expected = 1.2 + every * (rates.sum() - rates[-1] / 2)
         assert a.joint_coordinates[-1, 0] == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "law",
+    ["0/0", "twist / 0", "(twist - twist) / twist_rate / (time - time)", "where(time > 1, 1/0, 0)"],
+)
+def test_a_law_that_divides_by_nothing_is_refused(law: str) -> None:
+    arms = so.JointTakeoff.rate_law(angle=1.3, law=law, most_rate=5.0)
+    with pytest.raises(so.SomersaultError, match="divides by"):
+        so.fly("furrer", so.Takeoff(spin=8.64, joints={"shoulder": arms}), 0.1)
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        "min(sqrt(twist - 9), 1)", "max(1, sqrt(twist - 9))", "clip(sqrt(twist - 9), -1, 1)",
+        "sign(sqrt(twist - 9))", "sqrt(twist - 9) > 0", "1 - (sqrt(twist - 9) <= 2)",
+    ],
+)  # fmt: skip
+def test_what_is_no_number_stays_none_and_ends_the_flight(law: str) -> None:
+    arms = so.JointTakeoff.rate_law(angle=1.3, law=law, most_rate=5.0)
+    with pytest.warns(so.SomersaultWarning, match="law .left_shoulder.* has given no number"):
+        flight = so.fly("furrer", so.Takeoff(spin=8.64, joints={"shoulder": arms}), 0.1)
+    assert flight.ended == "not finite"
+
+
+def test_numbers_are_chosen_as_ever() -> None:
+    for text, at in (
+        ("min(x, 2)", np.minimum), ("max(x, 2)", np.maximum), ("x < 2", np.less),
+        ("x >= 2", np.greater_equal), ("sign(x)", lambda x, _: np.sign(x)),
+        ("clip(x, -1, 2)", lambda x, _: np.clip(x, -1, 2)),
+        ("where(x, 1, 2)", lambda x, _: np.where(x, 1, 2)),
+    ):  # fmt: skip
+        for x in (-3.0, -0.0, 0.0, 1.0, 2.0, 5.0):
+            assert float(so.laws.Formula(text).value({"x": x})) == float(at(x, 2.0))
+
+
+def test_noise_is_of_what_is_sensed_and_not_negative() -> None:
+    for noise, gains, said in (
+        ({"twist": -1.0}, {"k": 1.0}, "give 0 or more"),
+        ({"k": 1.0}, {"k": 1.0}, "a gain and not sensed"),
+    ):
+        arms = so.JointTakeoff.rate_law(angle=1.3, law="k * twist", gains=gains, noise=noise)
+        with pytest.raises(so.SomersaultError, match=said):
+            so.fly("furrer", so.Takeoff(spin=8.64, joints={"shoulder": arms}), 0.1)
+
+
+def test_a_star_stands_for_gains_of_joints_alike() -> None:
+    arms = so.JointTakeoff.rate_law(angle=1.3, law="k * twist", gains={"k": 1.0})
+    runs = so.flight.flights("furrer", so.Takeoff(spin=8.64, joints={"shoulder": arms}), 0.1)
+    both = [target.name for target in runs.targets("joints.*.gains.k")]
+    assert both == [target.name for target in runs.targets("joints.shoulder.gains.k")]

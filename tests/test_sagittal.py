@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -70,6 +72,16 @@ def test_springs_and_dampers_of_both_sides_add_up() -> None:
 def test_sides_that_do_not_turn_about_one_line_are_refused(athlete: so.Model) -> None:
     with pytest.raises(SomersaultError, match="left_knee and right_knee"):
         so.sagittal(athlete, {"left_hip_flexion": 0.5})
+
+
+def test_unlike_sides_are_refused() -> None:
+    with pytest.raises(SomersaultError, match="not alike on both sides"):
+        so.sagittal(so.athlete(1.67, 64), {"left_hip_flexion": 0.5})
+    legs = so.load(_two_legs())
+    trunk, left, right = legs.bodies
+    heavier = replace(legs, bodies=(trunk, left, replace(right, mass=2 * right.mass)))
+    with pytest.raises(SomersaultError, match="not alike on both sides"):
+        so.sagittal(heavier)
 
 
 def test_what_turns_about_no_axis_across_the_plane_is_held(athlete: so.Model) -> None:

@@ -11,7 +11,7 @@ from scipy.integrate import simpson, solve_ivp
 from scipy.special import ellipk
 from trees import mujoco_addresses, quiet, to_mujoco
 
-from somersault import SomersaultError
+from somersault import SomersaultError, SomersaultWarning
 from somersault.dynamics import Equations
 from somersault.flight import (
     GRAVITY,
@@ -283,6 +283,14 @@ def test_a_law_senses_other_joints(gymnast: Mount) -> None:
             gymnast.held, {}, 1.0,
             joints={"hip_flexion": JointTakeoff.rate_law(angle=0.0, law="twist")},
         )  # fmt: skip
+
+
+def test_a_swing_that_breaks_off_says_so_and_is_not_let_go(gymnast: Mount) -> None:
+    law = JointTakeoff.angle_law(angle=0.1, law="sqrt(-1 - time)")
+    with pytest.warns(SomersaultWarning, match="broke off after 0 s"):
+        found = swing(gymnast.held, {"bar": 1.0}, 0.2, joints={"hip_flexion": law})
+    with pytest.raises(SomersaultError, match="nothing to let go"):
+        released(found, gymnast)
 
 
 def test_driven_joints_that_make_no_sense_are_refused(gymnast: Mount) -> None:

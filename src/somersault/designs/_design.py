@@ -22,6 +22,7 @@ from somersault._core.checks import (
     whole_number,
 )
 from somersault._core.errors import SomersaultError
+from somersault._core.notes import note
 from somersault._core.stages import stage
 from somersault.designs._candidates import check_apart
 from somersault.designs._choose import Choose, moves_of
@@ -33,7 +34,7 @@ from somersault.designs._search import search
 from somersault.designs._trial import Outcome, Trial
 from somersault.ensembles import Vary
 from somersault.flight import Maneuver, flights
-from somersault.simulation import Simulation
+from somersault.simulation import ENDED, Simulation
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -192,7 +193,12 @@ def _judged(
     best = candidates[np.flatnonzero(within)[np.argmin(ranks[within])]]
     table = _table(trial.chosen, np.stack([begins, best]))
     fresh = replace(trial, size=held_out, seed=trial.seed + 1)
-    return Design(trial, fresh, table, best, journal.generations, fresh.run(table, **where))
+    rows = fresh.run(table, **where)
+    lost = int(fresh.failed(rows[ENDED])[1].sum())
+    if lost:
+        called = trial.simulation.endings.called
+        note(f"{lost:,} of {held_out:,} held-out {called} of the best failed, and count as such")
+    return Design(trial, fresh, table, best, journal.generations, rows)
 
 
 def _table(chosen: Mapping[str, Choose], parts: Array) -> Array:

@@ -31,7 +31,7 @@ def why_broken(flight: Flight) -> str:
     if away := _ran_away(instance("flight", flight, Flight)):
         return away
     if flight.ended == "not finite":
-        return "its motion is no longer finite; a spring, damper or move is too stiff or fast"
+        return f"its motion is no longer finite; {_not_finite(flight)}"
     given_up = f"it had taken {flight.steps} steps of the integration"
     if joints := aligned(flight):
         return (
@@ -42,6 +42,17 @@ def why_broken(flight: Flight) -> str:
         f"{given_up}; a spring or damper is too stiff, or the accuracy too fine: make them "
         "softer or coarser, or give more steps"
     )
+
+
+def _not_finite(flight: Flight) -> str:
+    """What may have made it so."""
+    led = [plan.joint.name for plan in flight.start.plans if plan.does.sensing]
+    if flight.system.layout.replay:
+        led.append("the replay")
+    often = "a spring, damper or move is too stiff or fast"
+    if not led:
+        return often
+    return f"{often}, or a law ({listed(led)}) has given no number, as the root of one below 0 is"
 
 
 def _ran_away(flight: Flight) -> str:

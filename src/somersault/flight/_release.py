@@ -17,6 +17,7 @@ from somersault._core.checks import by_name, instance
 from somersault._core.errors import SomersaultError
 from somersault.attitude import quaternion_from_matrix
 from somersault.dynamics import Equations
+from somersault.flight._broken import BROKEN
 from somersault.flight._swing import Swing
 from somersault.flight._takeoff import Takeoff
 from somersault.flight.behaviours import JointTakeoff
@@ -150,6 +151,11 @@ def ridden(swung: Swing, mount: Mount) -> Recording:
 def _require_of(swung: Swing, mount: Mount) -> None:
     instance("what is released", swung, Swing)
     instance("mount", mount, Mount)
+    if swung.ended in BROKEN:
+        raise SomersaultError(
+            f"this swing broke off after {swung.times[-1]:.4g} s ({swung.ended}), so there is "
+            "nothing to let go; swing for less time"
+        )
     if swung.model != mount.held:
         raise SomersaultError(f"this is a swing of {swung.model.name}, not of the mount given")
 

@@ -17,9 +17,11 @@ from numpy.typing import ArrayLike
 from somersault._core.array import Array
 from somersault._core.checks import by_name, instance, shown, whole_number
 from somersault._core.errors import SomersaultError
+from somersault._core.notes import note
 from somersault._core.numbers import number, numbers
 from somersault.dynamics import Equations
 from somersault.engine import STATUS
+from somersault.flight._broken import BROKEN
 from somersault.flight._course import Course
 from somersault.flight._held import held_system
 from somersault.flight._plans import by_joint, plans
@@ -269,6 +271,11 @@ def swing(
     _, coordinates, speeds = system.read(states, moments, parameters)
     acting = system.loads(np.concatenate([states, moments[:, None], parameters], 1))[:, 6:]
     ended = STATUS[float(solution.status[0])]
+    if ended in BROKEN:
+        note(
+            f"the swing broke off after {moments[-1]:.4g} s: {ended}; a spring, damper, move or "
+            "law is too stiff or fast, or gives no number"
+        )
     return Swing(model, g, props, moments, coordinates, speeds, acting, ended, settled)
 
 

@@ -87,13 +87,19 @@ def _of_replay(batch: Batch, path: str, what: str, key: str | None) -> tuple[Tar
 def _of_joints_alike(batch: Batch, path: str) -> tuple[Target, ...]:
     """The numbers of all joints whose names fit, where a mirrored joint has the same."""
     match = _JOINT.match(path)
+    of_table = _OF_TABLE.match(path)
+    if of_table and any(name[:1] == (of_table[2],) for name in batch.values):
+        match = of_table
     if not match:
         raise SomersaultError(f"{path} has a * that is not in a joint's name; write it out")
     pattern, what = match[1], match[2]
     meant: list[Target] = []
     for plan in batch.joints:
         name = plan.joint.name
-        if not fnmatchcase(name, pattern) or (what, name) not in batch.values:
+        there = [n for n in batch.values if n[:2] == (what, name)]
+        if not fnmatchcase(name, pattern) or not there:
+            continue
+        if match[3] and match[3] not in [str(x) for n in there for x in n[2:]]:
             continue
         if declared(plan.does)[what].image != "same":
             raise SomersaultError(

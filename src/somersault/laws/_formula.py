@@ -44,18 +44,44 @@ def wrapped(angle: Any) -> Any:
     return angle - 2 * np.pi * ca.floor(angle / (2 * np.pi) + 0.5)
 
 
+# What is no number stays none, so that a law that gives none ends the flight.
+
+
+def _least(a: Any, b: Any) -> Any:
+    return _first(a, b, a <= b, b <= a)
+
+
+def _greatest(a: Any, b: Any) -> Any:
+    return _first(a, b, a >= b, b >= a)
+
+
+def _first(a: Any, b: Any, this: Any, that: Any) -> Any:
+    """`a` if `this` is true, `b` if `that` is."""
+    return ca.if_else(this, a, ca.if_else(that, b, a + b))
+
+
+def _chosen(condition: Any, yes: Any, no: Any) -> Any:
+    either = ca.if_else(condition < 0, yes, ca.if_else(condition >= 0, no, condition))
+    return ca.if_else(condition > 0, yes, either)
+
+
+def _compared(is_so: Any, is_not: Any, a: Any, b: Any) -> Any:
+    """1 or 0, or no number."""
+    return ca.if_else(is_so, 1.0, ca.if_else(is_not, 0.0, a - b))
+
+
 _FUNCTIONS: dict[str, tuple[int, Callable[..., Any]]] = {
     "sin": (1, ca.sin),
     "cos": (1, ca.cos),
     "atan2": (2, ca.atan2),
     "sqrt": (1, ca.sqrt),
     "abs": (1, ca.fabs),
-    "sign": (1, ca.sign),
-    "min": (2, ca.fmin),
-    "max": (2, ca.fmax),
-    "clip": (3, lambda x, low, high: ca.fmin(ca.fmax(x, low), high)),
+    "sign": (1, lambda x: ca.if_else(x > 0, 1.0, ca.if_else(x < 0, -1.0, x))),
+    "min": (2, _least),
+    "max": (2, _greatest),
+    "clip": (3, lambda x, low, high: _least(_greatest(x, low), high)),
     "wrap": (1, wrapped),
-    "where": (3, lambda condition, yes, no: ca.if_else(condition, yes, no)),
+    "where": (3, _chosen),
 }
 _OPERATIONS: dict[type[ast.AST], Callable[..., Any]] = {
     ast.Add: lambda a, b: a + b,
@@ -64,10 +90,10 @@ _OPERATIONS: dict[type[ast.AST], Callable[..., Any]] = {
     ast.Div: lambda a, b: a / b,
     ast.UAdd: lambda a: a,
     ast.USub: lambda a: -a,
-    ast.Lt: lambda a, b: a < b,
-    ast.LtE: lambda a, b: a <= b,
-    ast.Gt: lambda a, b: a > b,
-    ast.GtE: lambda a, b: a >= b,
+    ast.Lt: lambda a, b: _compared(a < b, a >= b, a, b),
+    ast.LtE: lambda a, b: _compared(a <= b, a > b, a, b),
+    ast.Gt: lambda a, b: _compared(a > b, a <= b, a, b),
+    ast.GtE: lambda a, b: _compared(a >= b, a < b, a, b),
 }
 _CONSTANTS = {"pi": np.pi}
 
@@ -218,6 +244,11 @@ class Formula:
                 return _CONSTANTS[name] if name in _CONSTANTS else named(name)
             case ast.BinOp(op=ast.Pow(), right=ast.Constant(value=int(power))) if 0 < power < 10:
                 return _product([inner[0]] * power)
+            case ast.BinOp(op=ast.Div()) if ca.SX(inner[1]).is_zero():
+                raise SomersaultError(
+                    f"the law {self.text[:40]!r} divides by {ast.unparse(node.right)}, which is 0; "
+                    "correct it"
+                )
             case ast.BinOp(op=operation) | ast.UnaryOp(op=operation):
                 if type(operation) in _OPERATIONS:
                     return _OPERATIONS[type(operation)](*map(ca.SX, inner))
@@ -254,9 +285,9 @@ def _names(formula: Formula) -> frozenset[str]:
     """Those in a formula, read once however often it is written."""
     found: set[str] = set()
 
-    def note(name: str) -> float:
+    def note(name: str) -> Any:
         found.add(name)
-        return 1.0
+        return ca.SX.sym(name)
 
     formula._value(formula._tree, note)
     return frozenset(found)

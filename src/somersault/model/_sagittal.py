@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +20,7 @@ from somersault.model._vectors import IDENTITY, ZERO, as_matrix, as_vector
 from somersault.model._weld import merge_welded
 
 _PARALLEL = 1e-6  # of the sine between a hinge and the normal of the plane
+_ALIKE = 1e-6  # of a body's inertia: products of inertia, and what its place makes
 _ONE_LINE = 1e-6  # m between the hinges of the two sides, seen from the side
 
 
@@ -70,9 +71,30 @@ def sagittal(model: Model, angles: Mapping[str, ArrayLike] | None = None) -> Mod
         replace(body, name=names.get(body.name, body.name)) for body in merge_welded(bodies, True)
     ]
     across = model.axes[0]
+    _require_alike(model, merged, across - 1)
     return Model(
         f"{model.name}, from the side", True, tuple(merged), model.ignored, model.axes, across
     )
+
+
+def _require_alike(model: Model, bodies: Sequence[Body], normal: int) -> None:
+    """SomersaultError where a body is not alike on both sides of the plane: it would be pushed out
+    of it."""
+    places: list[float] = []
+    for body in bodies:
+        above = 0.0 if body.parent == GROUND else places[body.parent]
+        places.append(above + body.position[normal])
+    middle = places[0] + bodies[0].com[normal]
+    for body, place in zip(bodies, places, strict=True):
+        inertia = np.abs(np.array(body.inertia))
+        mixed = max(inertia[normal][k] for k in range(3) if k != normal)
+        off = abs(place + body.com[normal] - middle)
+        if mixed > _ALIKE * inertia.max() or off**2 * body.mass > _ALIKE * inertia.max():
+            raise SomersaultError(
+                f"{body.name} of {model.name} is not alike on both sides of its plane in this "
+                "pose, so it would not stay in it; give both sides the same angles, or take a body "
+                "of two like sides"
+            )
 
 
 class _Sides:

@@ -99,7 +99,8 @@ class DelayedFeedback:
                 "this feedback senses what it commands itself; ask for its stable_delays, or sense "
                 "something else"
             )
-        found = _polished(p, q, delay, np.linalg.eigvals(self._spectral(delay)))
+        with np.errstate(over="ignore", invalid="ignore"):  # roots far out, which are left out
+            found = _polished(p, q, delay, np.linalg.eigvals(self._spectral(delay)))
         return _sorted(found)[:count]
 
     def growth_rate(self, delay: float) -> float:

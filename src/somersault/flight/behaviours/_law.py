@@ -90,6 +90,15 @@ def checked_times(law: Law, where: str) -> dict[str, Any]:
             f"{where} has the gain {idle[0]}, which its law {law.law!r} does not have; "
             "correct one of them"
         )
+    for name, deviation in law.noise.items():
+        if name in law.gains:
+            raise SomersaultError(
+                f"{where} has noise of {name}, which is a gain and not sensed; leave it out"
+            )
+        if deviation < 0:
+            raise SomersaultError(
+                f"{where} senses {name} with the standard deviation {deviation:g}; give 0 or more"
+            )
     silent = sorted(set(law.noise) - names)
     if silent:
         raise SomersaultError(
