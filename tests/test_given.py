@@ -53,7 +53,7 @@ MISTAKES: dict[str, Callable[[], Any]] = {
     "position must be 3 finite": lambda: so.mounted(so.load("doll"), CLAMP, (0, np.nan, 0)),
     "rotation must be 3 x 3 finite": lambda: so.mounted(so.load("doll"), CLAMP, rotation=1),
     "model must be a somersault.Model, ": lambda: so.swing("doll", {}, 1.0),
-    "pose must be given by name": lambda: swing(angles=[1.0]),
+    "angles must be given by name": lambda: swing(angles=[1.0]),
     "rates must be given by name": lambda: swing(rates=[1.0]),
     "until must be a joint and its angle": lambda: swing(until="bar"),
     "stops must be given by name": lambda: swing(stops=[so.Prop(0.0)]),

@@ -164,7 +164,7 @@ def test_a_motion_has_film_page_and_numbers(tmp_path):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
     av = pytest.importorskip("av")
     with av.open(str(tmp_path / "one/films/x.mp4")) as film:
-        assert len(list(film.decode(video=0))) == 0.2 / 0.5 * 30 + 1
+        assert len(list(film.decode(video=0))) == 0.2 / 0.5 * 25 + 1
     rows = list(
         csv.DictReader(
             (tmp_path / "one/data/x-motion.csv").read_text(encoding="utf-8").splitlines()

@@ -90,13 +90,13 @@ def behaviour_of(motion: Any) -> type[Any]:
 
 
 def behaviour_names() -> list[str]:
-    """Names of the behaviours, without that of what the model says.
+    """Names of the behaviours in their order, without that of what the model says.
 
     Returns
     -------
     list of str
     """
-    return [name for name in Registry.classes if name is not None and name != "as modelled"]
+    return sorted(name for name in Registry.classes if name not in (None, "as modelled"))
 
 
 def _every_key() -> set[str]:
