@@ -179,7 +179,7 @@ def _judged(
 ) -> Design:
     """The best candidate of a search and the one it began with, on starts of their own."""
     candidates = np.concatenate([parts for parts, _ in journal.generations])
-    ranks, beyond = (
+    costs, beyond = (
         np.concatenate([getattr(o, what) for _, o in journal.generations])
         for what in ("costs", "beyond")
     )
@@ -190,7 +190,7 @@ def _judged(
             f"none of {len(candidates)} candidates keeps to the limits; the nearest is beyond them "
             f"by {100 * least:.3g} %; widen the bounds, or the limits"
         )
-    best = candidates[np.flatnonzero(within)[np.argmin(ranks[within])]]
+    best = candidates[np.flatnonzero(within)[np.argmin(costs[within])]]
     table = _table(trial.chosen, np.stack([begins, best]))
     fresh = replace(trial, size=held_out, seed=trial.seed + 1)
     rows = fresh.run(table, **where)

@@ -37,9 +37,6 @@ class Journal:
         if self._file is not None and self._file.exists():
             self._rows = self._read(self._file)
 
-    def __len__(self) -> int:
-        return len(self._rows)
-
     def _read(self, file: Path) -> list[dict[str, Any]]:
         file_path("a design's journal", file)
         try:
@@ -69,7 +66,7 @@ class Journal:
         if not np.array_equal(np.asarray(row["candidates"], float), candidates):
             del self._rows[generation:]  # of another version of the optimiser
             return None
-        return Outcome(*(np.asarray(row[what], float) for what in ("figures", "costs", "beyond")))
+        return _outcome(row)
 
     def add(self, candidates: Array, outcome: Outcome) -> None:
         """Keep a generation."""
@@ -87,10 +84,8 @@ class Journal:
     @property
     def generations(self) -> list[tuple[Array, Outcome]]:
         """Candidates and outcomes, in order."""
-        return [
-            (
-                np.asarray(row["candidates"], float),
-                Outcome(*(np.asarray(row[w], float) for w in ("figures", "costs", "beyond"))),
-            )
-            for row in self._rows
-        ]
+        return [(np.asarray(row["candidates"], float), _outcome(row)) for row in self._rows]
+
+
+def _outcome(row: Mapping[str, Any]) -> Outcome:
+    return Outcome(*(np.asarray(row[what], float) for what in ("figures", "costs", "beyond")))

@@ -8,8 +8,7 @@ from typing import Any
 
 import casadi as ca
 
-from somersault.dynamics import constrained_dynamics, forward_dynamics, inverse_dynamics
-from somersault.dynamics.vectors import Vec, scale
+from somersault.dynamics.vectors import Vec
 from somersault.flight._prop import Prop
 from somersault.flight._symbols import Symbols
 from somersault.flight._system import System
@@ -65,15 +64,10 @@ class HeldSymbols(Symbols):
         known = self.known[name]
         return self._stops[name].torque(known.q[0], known.u[0])
 
-    @cached_property
-    def accelerations(self) -> tuple[Vec, Vec, list[Any]]:
-        """Of the ground, none, and of all joint speeds."""
-        moving = (
-            self.tree, self.position, self.omega, self.rate, self.torques, self._gravity,
-        )  # fmt: skip
-        if self._geared:
-            return constrained_dynamics(*moving, self._driven, self._geared)
-        return forward_dynamics(*moving, self._driven)
+    @property
+    def gravity(self) -> Vec:
+        """What holds the body does not fall."""
+        return self._gravity
 
     @cached_property
     def slope(self) -> Any:
@@ -92,14 +86,3 @@ class HeldSymbols(Symbols):
         assert self._until is not None
         joint, angle = self._until
         return self.known[joint].q[0] - angle
-
-    @cached_property
-    def inverse(self) -> Any:
-        """Moment and force that the ground needs from outside, none, then what acts at the joints,
-        by springs, dampers, muscles and props together."""
-        _, _, joints = self.accelerations
-        moment, force, torques = inverse_dynamics(
-            self.tree, self.position, self.omega, self.rate, [0.0] * 3, scale(-1.0, self._gravity),
-            joints,
-        )  # fmt: skip
-        return ca.vertcat(*moment, *force, *torques)

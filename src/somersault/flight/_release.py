@@ -84,8 +84,7 @@ def released(
     _require_of(swung, mount)
     q, u = swung.q[-1], swung.u[-1]
     turn, origin, omega, velocity = _base_motion(mount, q, u)
-    rider = mount.rider
-    places = [mount.held.coordinate_slice(joint.name).start for joint in rider.joints]
+    rider, places = mount.rider, _places(mount)
     own, own_rates = q[places], u[places]
     still = np.concatenate([omega, velocity, own_rates])
     linear = _equations(rider).momentum(own, still)[3:] / rider.mass
@@ -138,14 +137,9 @@ def ridden(swung: Swing, mount: Mount) -> Recording:
     'doll'
     """
     _require_of(swung, mount)
-    turns, feet = body_frames(mount.held, swung.q)
-    carriers, rider = turns[:, mount.place], mount.rider
-    arms = carriers @ np.array(mount.position)
-    attitudes = np.stack([
-        quaternion_from_matrix(turn @ np.array(mount.rotation)) for turn in carriers
-    ])  # fmt: skip
-    places = [mount.held.coordinate_slice(joint.name).start for joint in rider.joints]
-    return Recording(rider, swung.times, feet[:, mount.place] + arms, attitudes, swung.q[:, places])
+    turns, origins = _base_frames(mount, swung.q)
+    attitudes = np.stack([quaternion_from_matrix(turn) for turn in turns])
+    return Recording(mount.rider, swung.times, origins, attitudes, swung.q[:, _places(mount)])
 
 
 def _require_of(swung: Swing, mount: Mount) -> None:
@@ -166,14 +160,25 @@ def _equations(model: Model) -> Equations:
     return Equations(model)
 
 
-def _base_motion(mount: Mount, q: Array, u: Array) -> tuple[Array, Array, Array, Array]:
-    """The rider's base turned in the ground's axes, its origin there, and its angular velocity and
-    its origin's velocity in its own axes."""
+def _places(mount: Mount) -> list[int]:
+    """Of the rider's joints among those of the whole."""
+    return [mount.held.coordinate_slice(joint.name).start for joint in mount.rider.joints]
+
+
+def _base_frames(mount: Mount, q: Array) -> tuple[Array, Array]:
+    """The rider's base turned in the ground's axes, (…, 3, 3), and its origin there, (…, 3)."""
     turns, feet = body_frames(mount.held, q)
-    spins, rates = body_velocities(mount.held, q, u)
-    carrier, foot, spin, rate = (x[mount.place] for x in (turns, feet, spins, rates))
-    turn, arm = carrier @ np.array(mount.rotation), carrier @ np.array(mount.position)
-    return turn, foot + arm, turn.T @ spin, turn.T @ (rate + np.cross(spin, arm))
+    carrier = turns[..., mount.place, :, :]
+    arm = carrier @ np.array(mount.position)
+    return carrier @ np.array(mount.rotation), feet[..., mount.place, :] + arm
+
+
+def _base_motion(mount: Mount, q: Array, u: Array) -> tuple[Array, Array, Array, Array]:
+    """`_base_frames`, and the base's angular velocity and its origin's velocity in its own axes."""
+    turn, origin = _base_frames(mount, q)
+    spin, rate = (x[mount.place] for x in body_velocities(mount.held, q, u))
+    arm = turn @ np.array(mount.rotation).T @ np.array(mount.position)
+    return turn, origin, turn.T @ spin, turn.T @ (rate + np.cross(spin, arm))
 
 
 def _let_go(joint: Joint, given: JointTakeoff | None, angle: float, rate: float) -> JointTakeoff:

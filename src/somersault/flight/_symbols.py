@@ -194,10 +194,15 @@ class Symbols:
                 result[own] = leader, self.here[slot.joint.name].numbers["factor"]
         return result
 
+    @property
+    def gravity(self) -> Vec:
+        """As it is felt: a body that falls freely feels none."""
+        return [0.0, 0.0, 0.0]
+
     @cached_property
     def accelerations(self) -> tuple[Vec, Vec, list[Any]]:
         """Of the base, of its centre of mass, and of all joint speeds."""
-        moving = (self.tree, self.position, self.omega, self.rate, self.torques, [0.0] * 3)
+        moving = (self.tree, self.position, self.omega, self.rate, self.torques, self.gravity)
         if self._geared:
             return constrained_dynamics(*moving, self._driven, self._geared)
         return forward_dynamics(*moving, self._driven)
@@ -280,8 +285,9 @@ class Symbols:
         the motion's own inverse dynamics, with torques that prescribed joints need."""
         alpha, acceleration, joints = self.accelerations
         moment, force, torques = inverse_dynamics(
-            self.tree, self.position, self.omega, self.rate, alpha, acceleration, joints
-        )
+            self.tree, self.position, self.omega, self.rate, alpha,
+            vsub(acceleration, self.gravity), joints,
+        )  # fmt: skip
         return ca.vertcat(*moment, *force, *torques)
 
 
