@@ -48,7 +48,7 @@ def requested(
     """What is asked, checked; arguments as those of `plan`."""
     if not model.free or model.plane is not None:
         raise SomersaultError(
-            f"{model.name} is not free in space, and a plan flies there; load it with base='free'"
+            f"{model.name} is not free in space, and a plan flies there; it needs a free base"
         )
     begin = by_name("start", start)
     moving = moving_joints(model, joints, begin, torque, fastest)
