@@ -10,9 +10,9 @@ PYTEST := OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS)
 .PHONY: reproduce test slow check bench docs pins clean
 .DEFAULT_GOAL := reproduce
 
-reproduce: report/claims.json
+reproduce: report/.whole
 
-report/claims.json: $(VENV)/.package $(shell find src -type f -not -name '*.pyc')
+report/.whole: $(VENV)/.package $(shell find src -type f -not -name '*.pyc')
 	$(BIN)/somersault reproduce --out report
 	touch $@
 
