@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linear_sum_assignment
 from scipy.spatial.transform import Rotation
+from shares import every
 from trees import mujoco_addresses, random_tree, to_mujoco
 
 from somersault.model import Model, load
@@ -143,7 +144,7 @@ def assert_same_roots(ours: np.ndarray, theirs: np.ndarray, tolerance: float) ->
     assert gap[linear_sum_assignment(gap)].max() < tolerance * np.abs(ours).max()
 
 
-@pytest.mark.parametrize("number", range(TREES))
+@pytest.mark.parametrize("number", every(range(TREES), 3))
 def test_random_trees(number: int) -> None:
     """All that is known of one body at once, as compiling its equations takes longest."""
     case = random_case(number)

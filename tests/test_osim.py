@@ -32,6 +32,7 @@ from osims import (
     version_3,
     version_4,
 )  # fmt: skip
+from shares import every
 
 import somersault as so
 from somersault._core.errors import SomersaultError, SomersaultWarning
@@ -99,7 +100,7 @@ def trees(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 @needs_opensim
 @pytest.mark.parametrize("version", [3, 4])
-@pytest.mark.parametrize("number", range(TREES))
+@pytest.mark.parametrize("number", every(range(TREES), 4))
 def test_random_trees_are_those_of_opensim(
     number: int, version: int, trees: dict[str, Any]
 ) -> None:

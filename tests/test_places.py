@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from shares import every
 
 import somersault as so
 from somersault._core import files, places
@@ -195,7 +196,7 @@ def test_what_is_not_finished_is_removed(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere all names are text")
 @pytest.mark.parametrize(
-    "environment", [{}, {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}]
+    "environment", every([{}, {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}], 2)
 )
 def test_names_of_files_that_are_no_text(tmp_path: Path, environment: dict[str, str]) -> None:
     folder = os.fsencode(tmp_path) + b"/\xff\xc3\xa9"

@@ -15,6 +15,7 @@ import mujoco
 import numpy as np
 import pytest
 from _pytest.mark import ParameterSet
+from shares import every
 from trees import assert_close
 
 import somersault as so
@@ -88,7 +89,9 @@ def test_there_are_robots_to_read() -> None:
     assert len(ROBOTS) - len(REFUSED_ROBOTS) >= 66
 
 
-@pytest.mark.parametrize("name", read_of(ROBOTS, lambda n: Path(n).name in REFUSED_ROBOTS))
+@pytest.mark.parametrize(
+    "name", every(read_of(ROBOTS, lambda n: Path(n).name in REFUSED_ROBOTS), 4)
+)
 def test_a_robot_has_pinocchios_mass_matrix(name: str) -> None:
     pin = pytest.importorskip("pinocchio")
     model = load(ROBOTS[name])
@@ -166,7 +169,7 @@ def reason(name: str) -> str | None:
     return next((why for end, why in REFUSED_WORLDS.items() if name.endswith(end)), None)
 
 
-@pytest.mark.parametrize("name", read_of(WORLDS, lambda n: reason(n) is not None))
+@pytest.mark.parametrize("name", every(read_of(WORLDS, lambda n: reason(n) is not None), 3))
 def test_a_world_has_mujocos_mass_matrix(name: str) -> None:
     model = load(WORLDS[name])
     m = mujoco.MjModel.from_xml_path(str(WORLDS[name]))
@@ -208,7 +211,7 @@ def test_a_world_has_mujocos_mass_matrix(name: str) -> None:
         assert_close(ours, theirs, 1e-9)
 
 
-@pytest.mark.parametrize("name", [n for n in WORLDS if reason(n) is not None])
+@pytest.mark.parametrize("name", every((n for n in WORLDS if reason(n) is not None), 4))
 def test_a_world_that_is_refused_is_refused_for_this(name: str) -> None:
     why = reason(name)
     with pytest.raises(SomersaultError) as caught:

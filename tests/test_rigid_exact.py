@@ -12,7 +12,7 @@ from scipy.integrate import quad, solve_ivp
 
 from somersault import attitude
 from somersault._core.errors import SomersaultError
-from somersault.rigid import RigidMotion, euler_rates, inertia_ratios
+from somersault.rigid import RigidMotion, inertia_ratios
 from somersault.rigid._quadrature import period_and_somersault
 
 SOMERSAULTS = 20
@@ -65,9 +65,16 @@ def times(of: RigidMotion, samples: int = 200) -> np.ndarray:
 def integrated(of: RigidMotion, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """ω and quaternion by an embedded Runge–Kutta method of order 8."""
 
-    def rates(_: float, y: np.ndarray) -> np.ndarray:
-        turning = attitude.quaternion_product(y[3:], [0.0, *y[:3]])
-        return np.concatenate([euler_rates(of.inertias, y[:3]), 0.5 * turning])
+    one, two, three = of.inertias.tolist()
+    gains = (two - three) / one, (three - one) / two, (one - two) / three
+
+    def rates(_: float, state: np.ndarray) -> list[float]:
+        x, y, z, a, b, c, d = state.tolist()
+        return [
+            gains[0] * y * z, gains[1] * z * x, gains[2] * x * y,
+            0.5 * (-b * x - c * y - d * z), 0.5 * (a * x + c * z - d * y),
+            0.5 * (a * y + d * x - b * z), 0.5 * (a * z + b * y - c * x),
+        ]  # fmt: skip
 
     start = np.concatenate([of.omega0, of.attitude0])
     found = solve_ivp(

@@ -8,9 +8,11 @@ from __future__ import annotations
 import importlib
 import inspect
 import os
+import shutil
 import signal
 import warnings
 from collections.abc import Iterator, Mapping
+from contextlib import chdir
 from datetime import datetime
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -229,12 +231,23 @@ NOT_FOR_USERS = {
 }
 
 
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The files that right calls read, once for all."""
+    folder = tmp_path_factory.mktemp("written")
+    with chdir(folder):
+        files()
+    return folder
+
+
 @pytest.fixture(autouse=True)
-def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def _in_a_folder_of_its_own(
+    written: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[None]:
     monkeypatch.chdir(tmp_path)
+    shutil.copytree(written, tmp_path, dirs_exist_ok=True)
     Path("folder").mkdir()
     os.mkfifo("pipe")
-    files()
     yield
     plt.close("all")
 

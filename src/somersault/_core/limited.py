@@ -38,6 +38,7 @@ def answer(program: str, *arguments: str) -> bytes:
         "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
         "OPENBLAS_NUM_THREADS": "1",  # threads and arenas of many cores would count as memory
         "MALLOC_ARENA_MAX": "2",
+        "MUJOCO_GL": "disable",  # nothing is drawn: it starts sooner without a look for GLFW
     }
     try:
         with stage("reading"):
