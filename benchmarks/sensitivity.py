@@ -19,19 +19,47 @@ import numpy as np
 import somersault as so
 from somersault.engine import MOST_STEPS, use_threads
 from somersault.flight._along import Along
-from somersault.flight._directions import Directions, of_state
+from somersault.flight._batch import TOLERANCE_PER_ACCURACY, Begun
+from somersault.flight._directions import Directions, of_numbers, of_state, sizes
+from somersault.flight._recorded_along import with_recordings
 from somersault.flight._sensitivity import watched_batch
+from somersault.flight._targets import targets
 
 MANY = 16  # times all directions of a flight
+TOLERANCE = 1e-9 * TOLERANCE_PER_ACCURACY  # that of an attitude to 1e-9 rad
 
 
-def layout() -> so.Maneuver:
+def layout() -> tuple[Begun, Directions]:
+    """Along its motion at takeoff."""
     arms = {"shoulder": so.JointTakeoff.sprung(angle=1.4, K=1.2, hold=True)}
-    return so.Maneuver("furrer", so.Takeoff(tilt=0.01, spin=8.64, joints=arms), 5.82)
+    return _from_takeoff(so.Maneuver("furrer", so.Takeoff(tilt=0.01, spin=8.64, joints=arms), 5.82))
 
 
-def gymnast() -> so.Maneuver:
+def gymnast() -> tuple[Begun, Directions]:
+    """Along its motion at takeoff: paths and motor tape stay."""
+    return _from_takeoff(_compliant())
+
+
+def moves_of_gymnast() -> tuple[Begun, Directions]:
+    """Along numbers that move its paths, and so change its motor tape."""
+    batch = watched_batch(_compliant())
+    shoulders = ("left_shoulder_abduction", "right_shoulder_abduction")
+    names = [f"joints.{n}.{what}.2" for n in shoulders for what in ("times", "angles")]
+    meant = [targets(batch, name) for name in names]
+    varied = tuple(dict.fromkeys(target.name for one in meant for target in one))
+    begun = batch.differing_in(varied, ()).begun()
+    by = sizes(begun.batch, meant)
+    along = of_numbers(begun, names, meant, by)
+    return begun, with_recordings(begun, along, names, meant, by)
+
+
+def _compliant() -> so.Maneuver:
     return so.arm_tilt().compliant(30.0, pose="wrap").off_nominal(tilt=-0.05)
+
+
+def _from_takeoff(maneuver: so.Maneuver) -> tuple[Begun, Directions]:
+    begun = watched_batch(maneuver).begun()
+    return begun, of_state(begun)
 
 
 def main() -> None:
@@ -41,22 +69,20 @@ def main() -> None:
     given = options.parse_args()
     report = {"load_before": machine.load()}
     use_threads(1)
-    for case in (layout, gymnast):
-        report[case.__name__] = measured(case(), given.rounds)
+    for case in (layout, gymnast, moves_of_gymnast):
+        report[case.__name__] = measured(*case(), given.rounds)
         print(
             case.__name__, *(f"{k}: {v:.3g}" for k, v in report[case.__name__].items()), sep="\n  "
         )
     machine.finish(report, machine.load(), given.json)
 
 
-def measured(maneuver: so.Maneuver, rounds: int) -> dict[str, float]:
+def measured(begun: Begun, one: Directions, rounds: int) -> dict[str, float]:
     """Times of one thread, ms, the least and the median, and their ratios."""
-    begun = watched_batch(maneuver).begun()
-    one = of_state(begun)
     many = Directions(
         _often(one.rows), _often(one.still), [(_often(k), _often(c)) for k, c in one.paths]
     )
-    end, tolerance = np.array([maneuver.duration]), maneuver.accuracy / 20
+    end, tolerance = np.array([begun.batch.duration]), TOLERANCE
     rows = np.repeat(begun.rows, len(many.rows), 0)
     calls: dict[str, Callable[[], object]] = {
         "one flight": lambda: begun.course.solve(begun.rows, end, tolerance),

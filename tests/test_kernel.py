@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import gc
 
 import casadi as ca
@@ -9,7 +10,11 @@ import numpy as np
 import pytest
 
 from somersault.dynamics import Equations
-from somersault.engine import Kernel, _kernel, use_threads
+from somersault.engine import LANES, Kernel, _kernel, compiled, compiled_function, use_threads
+from somersault.engine._derivative import derivative
+from somersault.engine._expression import expression
+from somersault.engine._shared import Shared
+from somersault.engine._vectors import module
 from somersault.model import load
 
 rng = np.random.default_rng(7)
@@ -233,3 +238,52 @@ def test_forward_dynamics_are_casadis(furrer: Kernel, samples: np.ndarray) -> No
     separate = np.split(samples[:200], np.cumsum(furrer.widths)[:-1], axis=1)
     theirs = np.array(furrer._function.map(200)(*(part.T for part in separate))).T
     np.testing.assert_allclose(furrer(samples[:200]), theirs, rtol=1e-11, atol=1e-11)
+
+
+OPERATIONS = {
+    "sums and products": lambda a, b, c: (a + b) * c - a * a + (a - b) / c - 1.0 / b + 2.0 * a,
+    "roots and sizes": lambda a, b, c: ca.sqrt(a * a + 1.0) + ca.fabs(b - c) + ca.fabs(c),
+    "angles": lambda a, b, c: ca.sin(a * b) * ca.cos(c) + ca.atan2(a, b) + ca.log(c * c + 0.1),
+    "the lesser, the greater": lambda a, b, c: ca.fmin(a * b, c) - ca.fmax(a, b * c),
+    "one or the other": lambda a, b, c: ca.if_else(a * b < c, a * c, ca.sin(b)) + ca.sign(a) * b,
+    "jumps": lambda a, b, c: ca.floor(3 * a) * b + ca.if_else(ca.logic_or(a > b, b > c), a, c),
+    "what does not change": lambda a, b, c: ca.DM(3.0) + ca.floor(c),
+}
+
+
+@pytest.mark.parametrize("what", OPERATIONS)
+def test_derivatives_along_a_direction(what: str) -> None:
+    """As CasADi differentiates; rows may stand anywhere, and the middle number has no derivative.
+
+    The second result is a number that went in, and the third is one that does not change.
+    """
+    x, along = ca.SX.sym("x", 3), ca.SX.sym("d", 2)
+    value = ca.vertcat(OPERATIONS[what](x[0], x[1], x[2]), x[2], x[1])
+    slope = ca.jtimes(value, x, ca.vertcat(along[0], 0.0, along[1]))
+    wanted = ca.Function("wanted", [x, along], [ca.densify(ca.vertcat(value, slope))])
+    given = ca.Function("f", [x], [ca.densify(value)])
+    at = rng.normal(size=(LANES, 5))
+    rows = np.zeros((6, LANES))  # of c, c', nothing, a', a, b
+    rows[[4, 5, 0, 3, 1]] = at.T
+    text = expression(given, "along", [4, 5, 0], [3, None, 1])
+    engine = compiled(module([text]))
+    function = compiled_function(engine, "along", ctypes.c_void_p, ctypes.c_void_p)
+    aligned, result = (_aligned(6) for _ in range(2))
+    aligned[:] = rows
+    function(aligned.ctypes.data, result.ctypes.data)
+    interpreted = [np.array(wanted(row[:3], row[3:])).ravel() for row in at]
+    np.testing.assert_allclose(result, np.array(interpreted).T, rtol=1e-12, atol=1e-12)
+
+
+def test_an_operation_without_a_derivative_is_refused() -> None:
+    with pytest.raises(NotImplementedError, match="derivative"):
+        derivative(Shared(), ca.OP_TAN, "%r", ["%a"], ["%b"])
+    assert derivative(Shared(), ca.OP_FLOOR, "%r", ["%a"], ["%b"]) is None
+    assert derivative(Shared(), ca.OP_MUL, "%r", ["%a", "%b"], [None, None]) is None
+
+
+def _aligned(rows: int) -> np.ndarray:
+    """Rows of lanes whose memory begins where vectors may."""
+    memory = np.zeros(rows * LANES + LANES)
+    first = -memory.ctypes.data % 64 // 8
+    return memory[first : first + rows * LANES].reshape(rows, LANES)

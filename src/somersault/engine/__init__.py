@@ -2,6 +2,7 @@
 
 from somersault.engine._clock import CLOCK, clock_at
 from somersault.engine._closed_loop import ClosedLoop, System
+from somersault.engine._expression import Direction
 from somersault.engine._integrator import MOST_STEPS, STATUS, Integrator, Pieces, Solution
 from somersault.engine._kernel import Kernel
 from somersault.engine._machine import compiled, compiled_function, processor
@@ -14,6 +15,7 @@ __all__ = [
     "MOST_STEPS",
     "STATUS",
     "ClosedLoop",
+    "Direction",
     "Integrator",
     "Kernel",
     "Pieces",

@@ -6,74 +6,82 @@ argument reduction with the cosine; both change results by no more than a roundi
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import accumulate
+from typing import NamedTuple
 
 import casadi as ca
 
-from somersault.engine._elementary import arc_tangent, logarithm, sine_cosine
+from somersault.engine._derivative import derivative
+from somersault.engine._elementary import arc_tangent, logarithm
+from somersault.engine._shared import Shared
 from somersault.engine._vectors import Vectors, number
 
 
-def expression(function: ca.Function, name: str) -> str:
+class Direction(NamedTuple):
+    """Along what a function of one vector is differentiated.
+
+    Attributes
+    ----------
+    values : sequence of int
+        For each of the vector's numbers the row where it stands.
+    slopes : sequence of int or None
+        The row where its derivative stands; None where that is zero.
+    """
+
+    values: Sequence[int]
+    slopes: Sequence[int | None]
+
+
+def expression(
+    function: ca.Function,
+    name: str,
+    rows: Sequence[int] | None = None,
+    slopes: Sequence[int | None] | None = None,
+) -> str:
     """LLVM text of `void name(ptr x, ptr y)` for one block of lanes.
 
     `function` takes dense vectors and returns one. The rows of x are those of its arguments, one
-    after another; the rows of y are its result's.
+    after another, unless `rows` says where each stands; the rows of y are its result's. Where
+    `slopes` says in which rows of x there are derivatives of the arguments, those of the result
+    stand behind it.
 
     Raises
     ------
     NotImplementedError
         For an operation that no equation here makes.
     """
-    v = _Shared()
+    v = Shared()
     first_rows = list(accumulate((function.nnz_in(k) for k in range(function.n_in())), initial=0))
-    slots: dict[int, str] = {}
+    rows = range(first_rows[-1]) if rows is None else rows
+    values: dict[int, str] = {}
+    changes: dict[int, str | None] = {}
     for k in range(function.n_instructions()):
         operation = function.instruction_id(k)
         inputs, outputs = function.instruction_input(k), function.instruction_output(k)
+        if operation == ca.OP_OUTPUT:
+            v.store("%y", outputs[1], values[inputs[0]])
+            if slopes is not None:
+                behind = outputs[1] + function.nnz_out(0)
+                v.store("%y", behind, changes[inputs[0]] or number(0.0))
+            continue
+        change: str | None = None
         if operation == ca.OP_INPUT:
             argument, element = inputs
-            slots[outputs[0]] = v.load("%x", first_rows[argument] + element)
-        elif operation == ca.OP_OUTPUT:
-            v.store("%y", outputs[1], slots[inputs[0]])
+            place = first_rows[argument] + element
+            value = v.load("%x", rows[place])
+            if slopes is not None and (row := slopes[place]) is not None:
+                change = v.load("%x", row)
         elif operation == ca.OP_CONST:
-            slots[outputs[0]] = number(function.instruction_constant(k))
+            value = number(function.instruction_constant(k))
         elif operation in _OPERATIONS:
-            operands = [slots[slot] for slot in inputs]
-            slots[outputs[0]] = _OPERATIONS[operation](v, *operands)
+            operands = [values[slot] for slot in inputs]
+            value = _OPERATIONS[operation](v, *operands)
+            change = derivative(v, operation, value, operands, [changes[slot] for slot in inputs])
         else:
             raise NotImplementedError(f"CasADi operation {operation} has no vector form here")
+        values[outputs[0]], changes[outputs[0]] = value, change
     return v.function(name, ["%x", "%y"])
-
-
-class _Shared(Vectors):
-    """Vector code that makes a quotient's denominator and an angle's reduction only once."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._inverses: dict[str, str] = {}
-        self._sines_cosines: dict[str, tuple[str, str]] = {}
-
-    def inverse(self, a: str) -> str:
-        """1 / a."""
-        if a not in self._inverses:
-            self._inverses[a] = self.div(number(1.0), a)
-        return self._inverses[a]
-
-    def sine_cosine(self, a: str) -> tuple[str, str]:
-        """sin a and cos a."""
-        if a not in self._sines_cosines:
-            self._sines_cosines[a] = sine_cosine(self, a)
-        return self._sines_cosines[a]
-
-    def holds(self, how: str, a: str, b: str) -> str:
-        """1 where a comparison holds, else 0; `how` is LLVM's name of it."""
-        return self.indicator(self.test(how, a, b))
-
-    def true(self, a: str) -> str:
-        """A mask of the lanes where a is not 0."""
-        return self.test("une", a, number(0.0))
 
 
 _OPERATIONS: dict[int, Callable[..., str]] = {
@@ -82,14 +90,14 @@ _OPERATIONS: dict[int, Callable[..., str]] = {
     ca.OP_SUB: Vectors.sub,
     ca.OP_MUL: Vectors.mul,
     ca.OP_DIV: lambda v, a, b: v.mul(a, v.inverse(b)),
-    ca.OP_INV: _Shared.inverse,
+    ca.OP_INV: Shared.inverse,
     ca.OP_NEG: Vectors.negative,
     ca.OP_SQ: lambda v, a: v.mul(a, a),
     ca.OP_TWICE: lambda v, a: v.add(a, a),
     ca.OP_SQRT: Vectors.square_root,
     ca.OP_FABS: Vectors.size,
     ca.OP_FLOOR: Vectors.floor,
-    ca.OP_SIGN: lambda v, a: v.sub(v.holds("olt", number(0.0), a), v.holds("olt", a, number(0.0))),
+    ca.OP_SIGN: Shared.sign,
     ca.OP_FMIN: Vectors.least,
     ca.OP_FMAX: Vectors.greatest,
     ca.OP_LT: lambda v, a, b: v.holds("olt", a, b),

@@ -12,7 +12,7 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault.engine import _lanes
-from somersault.engine._expression import expression
+from somersault.engine._expression import Direction, expression
 from somersault.engine._machine import compiled, compiled_function
 from somersault.engine._step import (
     BROKEN,
@@ -99,6 +99,10 @@ class Integrator:
     clock
         Where in the state the numbers of the clock begin (`CLOCK`), which are carried, if pieces
         end by one.
+    along
+        Where the numbers of `slope`'s vector, which is then that of `gauge`, `longest` and `tick`
+        too, stand among state, time and parameters, and where their derivatives. What moves is
+        then the state and its derivative, and so is what is carried.
 
     Examples
     --------
@@ -120,27 +124,30 @@ class Integrator:
         changing: int = 0,
         tick: ca.Function | None = None,
         clock: int | None = None,
+        along: Direction | None = None,
     ) -> None:
-        carried = 0 if tick is None else tick.nnz_out(0)
-        self.state: int = slope.nnz_out(0) + carried
-        self.inputs: int = slope.nnz_in(0)
+        times = 1 if along is None else 2
+        carried = 0 if tick is None else times * tick.nnz_out(0)
+        self.state: int = times * slope.nnz_out(0) + carried
+        self.inputs: int = times * (slope.nnz_in(0) - 1) + 1
         self.changing = changing
         self._slope, self._gauge, self._watch, self._longest = slope, gauge, watch, longest
-        self._tick, self._clock = tick, clock
+        self._tick, self._clock, self._along = tick, clock, along
         watched = 0 if watch is None else watch.nnz_out(0)
         self._rows = Rows(self.state, self.inputs - self.state - 1, watched, carried)
         self.outputs: int = self._rows.outputs
 
     @cached_property
     def _fly(self) -> Callable[..., None]:
-        functions = {
-            "rhs": self._slope,
-            "gauge": self._gauge,
-            "watch": self._watch,
-            "longest": self._longest,
-            "tick": self._tick,
-        }
-        texts = [expression(f, name) for name, f in functions.items() if f is not None]
+        values, slopes = self._along or (None, None)
+        functions = (
+            ("rhs", self._slope, values, slopes),
+            ("gauge", self._gauge, values, None),
+            ("watch", self._watch, None, None),
+            ("longest", self._longest, values, None),
+            ("tick", self._tick, values, slopes),
+        )
+        texts = [expression(f, name, at, by) for name, f, at, by in functions if f is not None]
         event = self._gauge is not None
         texts += [step(self._rows, event), renew(self._rows, event)]
         texts += [carry(self._rows)] if self._rows.carried else []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import casadi as ca
 import numpy as np
@@ -22,10 +23,11 @@ class Along:
     begun: Begun
     directions: Directions
 
-    @property
+    @cached_property
     def tangent(self) -> Tangent:
         """Its equations with a direction."""
-        return tangent(self.begun.batch.system)
+        on_the_way = any(np.any(part) for path in self.directions.paths for part in path)
+        return tangent(self.begun.batch.system, on_the_way)
 
     def solve(self, samples: Array, tolerance: float, steps: int) -> Solution:
         """Fly, with states at `samples` (K,)."""

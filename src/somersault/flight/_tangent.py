@@ -2,7 +2,8 @@
 
 Along a direction of the state at takeoff and of the parameters the state y changes by s, with
 ṡ = f_y s + f_p p'. Both are integrated side by side, so that the steps are good for both. Many
-directions are many flights, a lane each: each flies the flight itself and its own s.
+directions are many flights, a lane each: each flies the flight itself and its own s. The compiled
+equations are those of the flight, with the derivative of each instruction right behind it.
 """
 
 from __future__ import annotations
@@ -14,16 +15,17 @@ import casadi as ca
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.engine import Integrator
+from somersault.engine import Direction, Integrator
 from somersault.flight._plane import turning
 from somersault.flight._system import System
 from somersault.flight._watch import longest, named, nearest, watch
 
 
 @lru_cache(maxsize=16)
-def tangent(system: System) -> Tangent:
-    """The equations of a system with a direction, compiled once."""
-    return Tangent(system)
+def tangent(system: System, on_the_way: bool = True) -> Tangent:
+    """The equations of a system with a direction, compiled once. Where nothing changes
+    `on_the_way`, neither paths nor the motor tape, they are shorter."""
+    return Tangent(system, on_the_way)
 
 
 class Tangent:
@@ -33,14 +35,12 @@ class Tangent:
     those that change, their derivatives, those that stay, and theirs. Turns are watched.
     """
 
-    def __init__(self, system: System) -> None:
-        self.system, s = system, system.symbols
+    def __init__(self, system: System, on_the_way: bool) -> None:
+        self.system, self._on_the_way = system, on_the_way
         where = system.layout
         self._moving, self._changing = where.sensed.start, where.changing
         self._dy = ca.SX.sym("dy", where.state)
         self._dp = ca.SX.sym("dp", where.parameters)
-        self._y = _both(s.y, self._dy, self._moving)
-        self._p = _both(s.p, self._dp, self._changing)
 
     def state(self, y: Array, dy: Array) -> Array:
         """States with their derivatives, (N, 2 state), of both (N, state)."""
@@ -48,27 +48,32 @@ class Tangent:
 
     def apart(self, states: Array) -> tuple[Array, Array]:
         """States and derivatives, (N, state) each, of what `state` joins."""
-        m, n = self._moving, self.system.layout.state
-        y, dy, carried, d_carried = np.split(states, [m, 2 * m, n + m], -1)
-        return np.concatenate([y, carried], -1), np.concatenate([dy, d_carried], -1)
+        return _apart(states, self._moving)
 
     @cached_property
     def integrator(self) -> Integrator:
         """DOP853 for the state and its derivative."""
         s, where, axes = self.system.symbols, self.system.layout, self.system.model.axes
-        slope = self._function("slope", self._with_derivative(s.slope))
-        tick = None if s.tick is None else self._function("tick", self._with_derivative(s.tick))
-        gauge = self._function("gauge", s.gauge) if self.system.event else None
+        slope = _function("slope", s.x, s.slope)
+        tick = None if s.tick is None else _function("tick", s.x, s.tick)
+        gauge = _function("gauge", s.x, s.gauge) if self.system.event else None
         clock = where.replay.start + self._moving if where.replay else None
-        most = self._function("longest", longest(s.quaternion, s.omega, axes))
-        return Integrator(slope, gauge, self._watch, most, 2 * self._changing, tick, clock)
+        most = _function("longest", s.x, longest(s.quaternion, s.omega, axes))
+        return Integrator(
+            slope, gauge, self._watch, most, 2 * self._changing, tick, clock, self._places
+        )
 
-    def _function(self, name: str, value: Any) -> ca.Function:
-        x = ca.vertcat(self._y, self.system.symbols.t, self._p)
-        return ca.Function(name, [x], [ca.cse(ca.densify(value))])
-
-    def _with_derivative(self, value: Any) -> Any:
-        return ca.vertcat(value, self._along(value, self._dy, 0.0))
+    @property
+    def _places(self) -> Direction:
+        """Where state, time and parameters stand, and where their derivatives."""
+        n, m = self.system.layout.state, self.system.layout.parameters
+        y, dy = _apart(np.arange(2 * n), self._moving)
+        time = 2 * n
+        p, dp = _apart(np.arange(2 * m) + time + 1, self._changing)
+        changes: list[int | None] = dp.tolist()
+        if not self._on_the_way:
+            changes[: self._changing] = [None] * self._changing
+        return Direction([*y.tolist(), time, *p.tolist()], [*dy.tolist(), None, *changes])
 
     def _along(self, value: Any, dy: Any, dt: Any) -> Any:
         """The derivative where the state changes by dy, the time by dt and parameters by theirs."""
@@ -122,7 +127,7 @@ class Tangent:
             dt = -ca.jtimes(s.gauge, s.y, self._dy) / ca.jtimes(s.gauge, s.y, slope)
         derivative = self._along(ca.vertcat(*values), self._dy + slope * dt, dt)
         given = ca.vertcat(near, s.x, self._dy, self._dp)
-        return ca.Function("landed", [given], [ca.cse(ca.densify(ca.vertcat(dt, derivative)))])
+        return _function("landed", given, ca.vertcat(dt, derivative))
 
 
 def moving_names(system: System) -> list[str]:
@@ -150,12 +155,12 @@ def _turn(before: list[Any], after: list[Any]) -> list[Any]:
     return [2 * part / size for part in vector]
 
 
-def _both(one: Any, derivative: Any, first: int) -> Any:
-    return ca.vertcat(one[:first], derivative[:first], one[first:], derivative[first:])
+def _function(name: str, given: Any, value: Any) -> ca.Function:
+    return ca.Function(name, [given], [ca.cse(ca.densify(value))])
 
 
 def _first(both: Any, first: int) -> Any:
-    """What `_both` had first."""
+    """What `beside` had first."""
     half = both.numel() // 2
     return ca.vertcat(both[:first], both[2 * first : half + first])
 
@@ -164,3 +169,10 @@ def beside(one: Array, derivative: Array, first: int) -> Array:
     """Numbers (…, n) and their derivatives side by side, the `first` ones before the others."""
     parts = [one[..., :first], derivative[..., :first], one[..., first:], derivative[..., first:]]
     return np.concatenate(parts, -1)
+
+
+def _apart(both: Array, first: int) -> tuple[Array, Array]:
+    """What `beside` put together."""
+    half = both.shape[-1] // 2
+    one, derivative, rest, of_rest = np.split(both, [first, 2 * first, half + first], -1)
+    return np.concatenate([one, rest], -1), np.concatenate([derivative, of_rest], -1)
