@@ -32,6 +32,7 @@ bench: $(VENV)/.test
 	$(BIN)/python benchmarks/stability_chart.py
 	$(BIN)/python benchmarks/flights.py
 	$(BIN)/python benchmarks/sensitivity.py
+	$(BIN)/python benchmarks/planning.py
 	$(BIN)/python benchmarks/ensembles.py
 	$(BIN)/python benchmarks/films.py
 	$(BIN)/python benchmarks/robots.py

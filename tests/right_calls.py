@@ -169,6 +169,7 @@ def locus() -> Any:
     return st.root_locus(**LOCUS)
 
 
+PLANNED = {"model": "furrer", "plan": {"torque": 60.0, "twists": 0, "nodes": 4, "starts": 1}}
 PLAN = {
     "model": "furrer",
     "somersaults": 1,
@@ -236,6 +237,7 @@ def files() -> None:
     Path("main.toml").write_text(
         'model = "furrer"\nduration = 0.1\n[takeoff]\nspin = 5.0\n', encoding="utf-8"
     )
+    Path("planned.toml").write_text(tomli_w.dumps(PLANNED), encoding="utf-8")
     Path("design.toml").write_text(tomli_w.dumps({**SPEC, **DESIGN}), encoding="utf-8")
     Path("run.toml").write_text('robot = "biped"\n', encoding="utf-8")
     flown().save("recorded.nc")
@@ -1191,6 +1193,8 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     ),
     # --- planning
     "planning.plan": lambda: (so.plan, PLAN),
+    "planning.parse_plan": lambda: (planning.parse_plan, {"given": PLANNED, "beside": Path()}),
+    "planning.read_plan": lambda: (planning.read_plan, {"path": "planned.toml"}),
     "planning.Plan.fly": lambda: (raised().fly, {"samples": 3}),
     # --- dynamics
     "dynamics.Equations": lambda: (

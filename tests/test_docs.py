@@ -69,11 +69,13 @@ def test_every_key_of_a_spec_is_in_the_documentation() -> None:
     ours = [kind for kind in Registry.classes.values() if kind.__module__.startswith("somersault.")]
     from somersault.designs._spec import Search
     from somersault.designs._spec import Tables as DesignTables
+    from somersault.planning._spec import Asked
 
     designs = [DesignTables, Search, somersault.Choose, somersault.designs.Limit]
     designs += somersault.designs.Objective.kinds.values()
     tables = [
         *designs,
+        Asked,
         Keys,
         Tables,
         Sample,

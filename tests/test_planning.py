@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from math import pi
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 
 import somersault as so
+from somersault.cli import main
 from somersault.planning._gauss import gauss_legendre
 from somersault.planning._request import requested
 from somersault.planning._search import Search
@@ -282,7 +284,7 @@ def test_what_is_no_number_is_no_plan_either(capfd: pytest.CaptureFixture[str]) 
 
 @pytest.mark.slow
 def test_the_acrobat_twists_more_than_five_times() -> None:
-    """Bioptim's example, of which its authors report 5.31 rotations."""
+    """Bioptim's example, from many starts."""
     import runpy
 
     example = runpy.run_path(str(EXAMPLES / "plan_twist.py"))
@@ -291,3 +293,133 @@ def test_the_acrobat_twists_more_than_five_times() -> None:
     assert plan.rotations["twist"] > 5.2
     assert plan.departure < 1e-3
     assert abs(plan.fly(samples=plan.times).joint_torques).max() < 100.1
+
+
+# ------------------------------------------------------------------------------------ the command
+
+SPEC = """
+model = "furrer"
+[plan]
+twists = 1
+torque = 60.0
+nodes = 20
+starts = 2
+[plan.joints]
+shoulder = [0.2, 2.8]
+[plan.start]
+shoulder = 2.8
+"""
+
+
+def test_the_command_plans_and_another_flies_it(
+    twisted: so.planning.Plan, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "asked.toml").write_text(SPEC)
+    found, page = tmp_path / "found.toml", tmp_path / "found.html"
+    words = ["plan", str(tmp_path / "asked.toml"), "--processes", "1"]
+    assert main([*words, "--out", str(found), "--page", str(page), "--json"]) == 0
+    record = json.loads(capsys.readouterr().out)
+    assert record["turns"] == twisted.rotations
+    assert record["duration"] == twisted.duration
+    assert [one["solved"] for one in record["starts"]] == [a.solved for a in twisted.attempts]
+    assert record["greatest_torques"].keys() == {"left_shoulder", "right_shoulder"}
+    assert max(record["greatest_torques"].values()) <= 60.0 + 1e-3
+    assert page.read_text(encoding="utf-8").startswith("<!doctype html")
+    assert main(["fly", str(found), "--json"]) == 0
+    landed = json.loads(capsys.readouterr().out)["final"]
+    assert landed["twist"] == pytest.approx(2 * pi, abs=1e-3)
+    assert landed["somersault"] == pytest.approx(2 * pi, abs=1e-3)
+
+
+def test_what_the_command_says(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("asked.toml").write_text(
+        'model = "furrer"\n[plan]\ntorque = 60.0\nnodes = 10\ntwists = 0\n'
+    )
+    assert main(["plan", "asked.toml", "--processes", "1"]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said[0].startswith("furrer, ")
+    assert "somersault 1.0000" in said[0]
+    assert "of 4 starts come to a plan" in said[2]
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["asked.toml"]
+
+
+@pytest.mark.parametrize(
+    ("spec", "said"),
+    [
+        ('model = "furrer"', "a plan's SPEC needs a table [plan]"),
+        ('model = "furrer"\n[plan]', "plan.torque is missing"),
+        ("[plan]\ntorque = 1.0", "model is missing"),
+        ('model = "furrer"\n[plan]\ntorqe = 1.0', "plan.torqe is no key of a SPEC"),
+        (
+            'model = "furrer"\nduration = 1.0\n[plan]\ntorque = 1.0',
+            "duration is no key of a plan's",
+        ),
+        ('model = "furrer"\n[plan]\ntorque = -1.0', "torque must be a positive number"),
+        ('model = "furrer"\n[plan]\ntorque = 60.0\njoints = ["nose"]', "nose"),
+    ],
+)
+def test_a_mistake_in_a_spec_is_a_sentence(spec: str, said: str, tmp_path: Path) -> None:
+    (tmp_path / "asked.toml").write_text(spec)
+    with pytest.raises(so.SomersaultError) as raised:
+        so.planning.read_plan(tmp_path / "asked.toml").run(processes=1)
+    assert said in str(raised.value)
+
+
+def test_the_example_in_toml_asks_what_the_example_in_python_does() -> None:
+    import runpy
+
+    example = runpy.run_path(str(EXAMPLES / "plan_twist.py"))
+    spec = so.planning.read_plan(EXAMPLES / "plan_twist.toml")
+    assert spec.model == so.load(example["ACROBAT"], axes=(1, 2, 3))
+    assert (spec.asked.nodes, spec.asked.starts) == (example["NODES"], example["STARTS"])
+    assert (spec.asked.somersaults, spec.asked.twists, spec.asked.torque) == (1, "most", 100.0)
+    for key, ranges in example["ASKED"].items():
+        table = getattr(spec.asked, key)
+        assert table.keys() == ranges.keys()
+        for name, ends in ranges.items():
+            np.testing.assert_allclose(table[name], ends, rtol=1e-7)
+
+
+# ------------------------------------------------------------------------------- springs for a plan
+
+
+def test_a_plan_gets_springs_with_which_it_lands_from_other_starts(
+    twisted: so.planning.Plan,
+) -> None:
+    """The chosen ones are flown again, from starts of our own, each flight by itself."""
+    soft = twisted.maneuver.compliant(10.0, pose={"shoulder": 1.5})
+    nominal = twisted.fly()
+    springs, dampers = "joints.shoulder.stiffness", "joints.shoulder.damping"
+    found = so.design(
+        so.flight.flights(
+            soft.model, soft.takeoff, soft.duration, report=["landing_error"], against=nominal
+        ),
+        choose={
+            "frequency": so.Choose(
+                multiplies={springs: 2, dampers: 1}, between=(0.1, 4.0), scale="log", start=1.0
+            )
+        },
+        vary={
+            angle: so.Vary(adds_to=f"takeoff.{angle}", normal=[0.0, 0.02])
+            for angle in ("tilt", "twist")
+        },
+        objective=so.designs.Mean("landing_error"),
+        size=16,
+        evaluations=24,
+        held_out=128,
+    )
+    assert found.figure < found.first_figure / 3
+    chosen = twisted.maneuver.compliant(10.0 * found.best["frequency"], pose={"shoulder": 1.5})
+    target = so.flight.landing_target(nominal)
+    errors = []
+    for maneuver in (soft, chosen):
+        own = []
+        for tilt, twist in np.random.default_rng(3).normal(0, 0.02, (12, 2)):
+            landed = maneuver.off_nominal(tilt=tilt, twist=twist).fly().landing
+            angles = {name: getattr(landed, name) for name in ("somersault", "tilt", "twist")}
+            own.append(so.flight.landing_error(target, {**angles, **landed.joints}))
+        errors.append(np.mean(own))
+    assert errors[1] < errors[0] / 3

@@ -141,6 +141,7 @@ NOT_FOR_USERS = {
             "DesignSpec*",
             "Plan",
             "Plan.drawn",
+            "PlanSpec*",
             "Flight",
             "Flights",
             "Flights.ending_in_words",

@@ -12,6 +12,7 @@ from somersault.cli import main
 DIGITS = "9" * 5000
 SPEC = 'model = "book"\nduration = 0.1\n[takeoff]\nspin = 5.0\n'
 MANY = SPEC + '[vary.a]\nadds_to = "takeoff.tilt"\nnormal = [0.0, 0.1]\n[sample]\nsize = 4\n'
+PLAN = 'model = "furrer"\n[plan]\ntorque = 60.0\nnodes = 4\nstarts = 1\ntwists = 0\n'
 INERTIAL = (
     '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
     "</inertial>"
@@ -46,6 +47,8 @@ ORDERS = [
     ["map", "book", "--out", "a.txt", "--out", "a.png"], ["fly", "one.toml", "--json", "--json"],
     ["ensemble", "many.toml", "--out", "same", "--plot", "same"],
     ["fly", "one.toml", "--out", "same.nc", "--video", "same.nc"],
+    ["plan", "one.toml"], ["plan", "plan.toml", "--out", "plan.toml"],
+    ["plan", "plan.toml", "--out", "plan.nc"], ["plan", "plan.toml", "--video", "plan.toml"],
 ]  # fmt: skip
 
 
@@ -55,6 +58,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "one.toml").write_text(SPEC)
     (tmp_path / "many.toml").write_text(MANY)
+    (tmp_path / "plan.toml").write_text(PLAN)
     (tmp_path / "folder").mkdir()
     (tmp_path / "empty").touch()
     for ending in (".xml", ".toml"):
@@ -76,7 +80,9 @@ def answered(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert len(said[0]) < 2000
 
 
-@pytest.mark.parametrize("command", ["models", "stability", "map", "equations", "fly", "ensemble"])
+@pytest.mark.parametrize(
+    "command", ["models", "stability", "map", "equations", "fly", "plan", "ensemble"]
+)
 def test_names(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     for name in NAMES:
         answered([command, name], capsys)
@@ -92,6 +98,11 @@ def test_assignments(option: str, capsys: pytest.CaptureFixture[str]) -> None:
 def test_numbers(option: str, capsys: pytest.CaptureFixture[str]) -> None:
     for text in NUMBERS:
         answered(["ensemble", "many.toml", option, text], capsys)
+
+
+def test_processes(capsys: pytest.CaptureFixture[str]) -> None:
+    for text in [*NUMBERS, "1"]:
+        answered(["plan", "plan.toml", "--processes", text], capsys)
 
 
 def test_other_numbers(capsys: pytest.CaptureFixture[str]) -> None:

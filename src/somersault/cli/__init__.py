@@ -29,6 +29,7 @@ _COMMANDS = {
     "stability": "Is a steady spin of a model stable, how fast does it go wrong, and why.",
     "map": "The momentum sphere of a rigid model: its energies, separatrix and kinds of motion.",
     "fly": "One free flight, from a takeoff described in a TOML file.",
+    "plan": "A maneuver that is found: with the most twist, or with the least effort.",
     "run": "A robot that runs on two legs, and somersaults on the way.",
     "ensemble": "Many flights that differ in what a TOML file varies; goes on if stopped.",
     "design": "The numbers of a body or a motion that are most reliable over a scatter of starts.",

@@ -16,13 +16,14 @@ from somersault._core.array import Array
 from somersault.planning._entries import Assembly
 from somersault.planning._program import Program
 
-_TOLERANCE = 1e-6
 _KEPT = 1e-6  # by which a constraint may be missed
-_QUIET = {
+SETTINGS = {
     "print_time": False,
     "show_eval_warnings": False,
     "ipopt.print_level": 0,
     "ipopt.sb": "yes",
+    "ipopt.tol": 1e-6,
+    "ipopt.mu_strategy": "adaptive",
 }
 Fill = Callable[[Sequence[Array], Sequence[Array | None]], None]
 _NO_MORE = {"no_nlp_grad": True, "calc_lam_p": False, "calc_multipliers": False}
@@ -60,7 +61,7 @@ class Outcome:
 class Solver:
     """IPOPT on one program, for any start."""
 
-    def __init__(self, program: Program, most_iterations: int, **options: Any) -> None:
+    def __init__(self, program: Program, most_iterations: int) -> None:
         self._program = program
         self._last: Array | None = None
         self._known: dict[str, Array] = {}
@@ -82,10 +83,7 @@ class Solver:
         }  # fmt: skip
         own = {name: part for name, part in self._parts.items() if name != "nlp"}
         settings: dict[str, Any] = {
-            **_QUIET, **_NO_MORE, **own,
-            "ipopt.tol": _TOLERANCE, "ipopt.max_iter": most_iterations,
-            "ipopt.mu_strategy": "adaptive",
-            **{f"ipopt.{name}": value for name, value in options.items()},
+            **SETTINGS, **_NO_MORE, **own, "ipopt.max_iter": most_iterations
         }  # fmt: skip
         self._solver = ca.nlpsol("plan", "ipopt", self._parts["nlp"], settings)
 

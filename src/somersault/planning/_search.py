@@ -14,8 +14,7 @@ from somersault.planning._point import Point
 from somersault.planning._task import Task
 from somersault.planning._transcription import Transcription, transcribed
 
-_MOST_ITERATIONS = 500
-_FINE_BARRIER = 1e-3  # IPOPT's first, for a start that is nearly right
+MOST_ITERATIONS = 500
 
 
 @dataclass(frozen=True)
@@ -80,7 +79,7 @@ class Search:
         self.task = task
         self._point = Point(task.model, task.moving)
         self._grids: dict[int, Transcription] = {}
-        self._solvers: dict[tuple[int, bool], Solver] = {}
+        self._solvers: dict[int, Solver] = {}
 
     def grid(self, intervals: int) -> Transcription:
         """The task's program on so many intervals."""
@@ -97,12 +96,9 @@ class Search:
             start = leap(grid, job.x, np.random.default_rng(job.seed))
         else:
             start = refined(self.grid(job.coarse), job.x, grid)
-        return self._solver(job.intervals, isinstance(job, Refine))(start)
+        return self._solver(job.intervals)(start)
 
-    def _solver(self, intervals: int, near: bool) -> Solver:
-        key = intervals, near
-        if key not in self._solvers:
-            options = {"mu_init": _FINE_BARRIER} if near else {}
-            program = self.grid(intervals).program
-            self._solvers[key] = Solver(program, _MOST_ITERATIONS, **options)
-        return self._solvers[key]
+    def _solver(self, intervals: int) -> Solver:
+        if intervals not in self._solvers:
+            self._solvers[intervals] = Solver(self.grid(intervals).program, MOST_ITERATIONS)
+        return self._solvers[intervals]
