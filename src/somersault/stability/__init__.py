@@ -4,8 +4,6 @@ from somersault.stability._chart import (
     chart,
     growth_rates,
     root_locus,
-    stable_ranges,
-    stable_ranges_by_case,
 )
 from somersault.stability._coordinates import locked_speeds
 from somersault.stability._delay import DelayedFeedback
@@ -13,6 +11,7 @@ from somersault.stability._feedback import feedback
 from somersault.stability._joint_roots import joint_roots
 from somersault.stability._modes import Mode
 from somersault.stability._principal import PrincipalAxes, principal_axes
+from somersault.stability._ranges import stable_ranges, stable_ranges_by_case
 from somersault.stability._spin import principal_inertias, spin
 from somersault.stability._steady import holding_torques
 from somersault.stability._types import LinearSpin, Spin

@@ -1,4 +1,4 @@
-"""Stability over many poses, springs and bodies at once: charts, root loci, stable ranges."""
+"""Stability over many poses, springs and bodies at once: charts and root loci."""
 
 from __future__ import annotations
 
@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
-from somersault._core.checks import by_name, shown, truth, whole_number
+from somersault._core.checks import by_name, truth
 from somersault._core.errors import SomersaultError
-from somersault._core.numbers import floats
 from somersault.model import Model
 from somersault.stability._grid import Grid, Values, grid, row, unit
 from somersault.stability._growth import definite, growth_rate
@@ -19,9 +18,6 @@ from somersault.stability._principal import Axis
 
 if TYPE_CHECKING:
     import xarray as xr
-
-_MOST_SAMPLES = 1_000_000
-_HALVINGS = 32  # of an edge's bracket
 
 
 def growth_rates(
@@ -75,7 +71,7 @@ def growth_rates(
     """
     by_name("quantities", quantities)
     cases = grid(model, quantities, pose, stiffness, damping, axis, lock, subsystem)
-    return _rates(cases, {})
+    return largest_growth(cases, {})
 
 
 def chart(
@@ -137,9 +133,9 @@ def chart(
     if x_name == y_name:
         raise SomersaultError(f"a chart of {x_name} against itself shows nothing; vary two things")
     truth("energy", energy)
-    _require_open(cases, x_name, y_name)
+    require_open(cases, x_name, y_name)
     varied = {x_name: x_values[None, :], y_name: y_values[:, None]}
-    rates = _rates(cases, varied)
+    rates = largest_growth(cases, varied)
     dims = (y_name, x_name)
     data: dict[str, Any] = {
         "growth_rate": (dims, rates, {"units": "spin rate", "long_name": "largest growth rate"}),
@@ -209,7 +205,7 @@ def root_locus(
     name, values = row("what a root locus is along", along)
     if values.ndim != 1 or not values.size:
         raise SomersaultError("a root locus needs one row of values")
-    _require_open(cases, name)
+    require_open(cases, name)
     by_part = [
         np.broadcast_to(r, (len(values), r.shape[-1]))
         for r in (part.roots() for part in cases.parts({name: values}))
@@ -224,114 +220,7 @@ def root_locus(
     )
 
 
-def stable_ranges(
-    model: str | Model,
-    along: tuple[str, float, float],
-    *,
-    pose: Values | None = None,
-    stiffness: Values | None = None,
-    damping: Values | None = None,
-    fixed: Values | None = None,
-    axis: Axis | str | int | None = None,
-    lock: str | Iterable[str] = (),
-    subsystem: str | None = None,
-    samples: int = 1201,
-) -> list[tuple[float, float]]:
-    """Where between two values of a quantity the spin is stable, each edge to about 1e-9.
-
-    Looks at evenly spaced values, so an island narrower than their spacing can be missed, then
-    halves each edge's bracket.
-
-    Parameters
-    ----------
-    model : str or Model
-        A shipped model's name, a model file, or a model.
-    along : tuple of str, float and float
-        The name of a quantity, as in `growth_rates`, its least and its greatest value.
-    pose, stiffness, damping, fixed
-        What stays fixed, one number each, as for `chart`.
-    axis, lock, subsystem
-        As for `growth_rates`.
-    samples : int
-        How many values to look at.
-
-    Returns
-    -------
-    list of tuple of float
-        The ends of each stable range.
-
-    Raises
-    ------
-    SomersaultError
-        As for `growth_rates`.
-
-    Examples
-    --------
-    >>> from somersault.stability import stable_ranges
-    >>> for low, high in stable_ranges("furrer", ("stiffness.shoulder", -2, 4),
-    ...                                pose={"shoulder": 1.3}):
-    ...     print(f"{low:.4f} to {high:.4f}")
-    0.8919 to 1.3606
-    """
-    cases = grid(model, fixed, pose, stiffness, damping, axis, lock, subsystem)
-    name, low, high = _ends(along)
-    _require_open(cases, name)
-    if cases.shape({}):
-        raise SomersaultError(
-            "stable ranges are those of one case, and these are arrays; use stable_ranges_by_case"
-        )
-    return _ranges(cases, name, low, high, samples)[0]
-
-
-def stable_ranges_by_case(
-    model: str | Model,
-    along: tuple[str, float, float],
-    *,
-    pose: Values | None = None,
-    stiffness: Values | None = None,
-    damping: Values | None = None,
-    fixed: Values | None = None,
-    axis: Axis | str | int | None = None,
-    lock: str | Iterable[str] = (),
-    subsystem: str | None = None,
-    samples: int = 1201,
-) -> list[list[tuple[float, float]]]:
-    """`stable_ranges` of many cases at once: of many poses, say.
-
-    Parameters
-    ----------
-    model, along, axis, lock, subsystem, samples
-        As for `stable_ranges`.
-    pose, stiffness, damping, fixed
-        The cases: arrays (N,), or numbers where all cases have the same.
-
-    Returns
-    -------
-    list of list of tuple of float
-        The ends of the stable ranges of each case.
-
-    Raises
-    ------
-    SomersaultError
-        As for `growth_rates`.
-
-    Examples
-    --------
-    >>> from somersault.stability import stable_ranges_by_case
-    >>> by_pose = stable_ranges_by_case("furrer", ("stiffness.shoulder", -2, 4),
-    ...                                 pose={"shoulder": [0.1, 1.3]})
-    >>> [len(ranges) for ranges in by_pose]
-    [0, 1]
-    """
-    cases = grid(model, fixed, pose, stiffness, damping, axis, lock, subsystem)
-    name, low, high = _ends(along)
-    _require_open(cases, name)
-    if len(cases.shape({})) != 1:
-        raise SomersaultError("cases are rows of numbers, (N,); use stable_ranges for one case")
-    return _ranges(cases, name, low, high, samples)
-
-
-def _rates(cases: Grid, varied: Values) -> Array:
+def largest_growth(cases: Grid, varied: Values) -> Array:
     """Largest growth rate of each case, over its parts."""
     shape = cases.shape(varied)
     if 0 in shape:
@@ -350,50 +239,8 @@ def _everywhere(cases: Grid, varied: Values) -> Array:
     return np.broadcast_to(good, cases.shape(varied))
 
 
-def _require_open(cases: Grid, *names: str) -> None:
+def require_open(cases: Grid, *names: str) -> None:
     """Refuse a quantity that is varied and fixed at once."""
     for name in names:
         if name in cases.fixed:
             raise SomersaultError(f"{name} is varied and fixed at once; do one of the two")
-
-
-def _ends(along: Any) -> tuple[str, float, float]:
-    if not isinstance(along, tuple | list) or len(along) != 3:
-        raise SomersaultError(
-            "what stable ranges are along is a name, a lower and a higher value, "
-            f"('stiffness.shoulder', -2, 4), not {shown(along)}"
-        )
-    name, (low, high) = row("what stable ranges are along", (along[0], along[1:]))
-    if not low < high:
-        raise SomersaultError(f"stable ranges of {name} need a lower and a higher value")
-    return name, float(low), float(high)
-
-
-def _ranges(
-    cases: Grid, name: str, low: float, high: float, samples: int
-) -> list[list[tuple[float, float]]]:
-    """Ranges of one quantity in which each case is stable: by looking, and then by halving."""
-    whole_number("samples", samples, 2, _MOST_SAMPLES)
-    held = {key: floats(key, value) for key, value in cases.fixed.items()}
-    values = np.linspace(low, high, samples)
-
-    def stable(at: Array, case: Array | None) -> Array:
-        of_case = {key: v if v.ndim == 0 else v[case] for key, v in held.items()}
-        return _rates(cases, {**of_case, name: at}) <= 0
-
-    (count,) = cases.shape({}) or (1,)
-    inside = np.broadcast_to(stable(values, np.arange(count)[:, None]), (count, samples))
-    case, column = np.nonzero(inside[:, 1:] != inside[:, :-1])
-    left, right = values[column], values[column + 1]
-    starts_inside = inside[case, column]
-    for _ in range(_HALVINGS if len(case) else 0):
-        middle = (left + right) / 2
-        same = stable(middle, case) == starts_inside
-        left, right = np.where(same, middle, left), np.where(same, right, middle)
-    edges = (left + right) / 2
-    by_case = []
-    for k in range(count):
-        first, last = ([low] if inside[k, 0] else []), ([high] if inside[k, -1] else [])
-        ends = [*first, *edges[case == k].tolist(), *last]
-        by_case.append(list(zip(ends[::2], ends[1::2], strict=True)))
-    return by_case
