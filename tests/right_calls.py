@@ -160,6 +160,21 @@ def raised() -> planning.Plan:
 
 
 @cache
+def resonant() -> so.LinearSpin:
+    return so.spin("furrer", pose={"shoulder": 1.3}).linear({"shoulder": 1.16})
+
+
+@cache
+def two_to_one() -> st.Resonance:
+    return resonant().resonances(order=3)[0]
+
+
+@cache
+def bursting() -> st.Burst:
+    return st.burst(resonant(), two_to_one())
+
+
+@cache
 def charted() -> Any:
     return st.chart(**CHART)
 
@@ -201,6 +216,7 @@ CHART = {
     "lock": (),
     "subsystem": "tilt",
     "energy": True,
+    "resonances": 3,
 }
 RANGES = {
     "model": "furrer",
@@ -355,6 +371,14 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
         {"stiffness": {"shoulder": 1.0}, "damping": {"shoulder": 0.1}, "lock": (), "rate": 1.0},
     ),
     "stability.LinearSpin.subsystem": lambda: (spun().linear().subsystem, {"coordinate": "tilt"}),
+    "stability.LinearSpin.resonances": lambda: (
+        spun().linear({"shoulder": 1.0}).resonances,
+        {"order": 4, "within": 0.05},
+    ),
+    "stability.burst": lambda: (st.burst, {"spin": resonant(), "resonance": two_to_one()}),
+    "stability.Burst.turns": lambda: (bursting().turns, {"amplitude": 0.01}),
+    "stability.Burst.width": lambda: (bursting().width, {"amplitude": 0.01}),
+    "stability.Burst.amplitude": lambda: (bursting().amplitude, {"tilt": 0.01, "twist": 0.0}),
     "stability.chart": lambda: (st.chart, CHART),
     "stability.growth_rates": lambda: (
         st.growth_rates,

@@ -167,6 +167,8 @@ NOT_FOR_USERS = {
             "LinearSpin",
             "Mode",
             "PrincipalAxes",
+            "Resonance",
+            "Burst",
             "Spin",
             "Noise*",
             "Attempt",

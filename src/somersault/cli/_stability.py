@@ -107,6 +107,16 @@ def _record(system: LinearSpin, axis: str) -> dict[str, Any]:
             {"name": mode.name, "root": [mode.root.real, mode.root.imag], "energy": mode.energy}
             for mode in system.modes
         ],
+        "resonances": [
+            {
+                "frequencies": [mode.root.imag for mode in found.modes],
+                "counts": list(found.counts),
+                "order": found.order,
+                "detuning": found.detuning,
+                "explosive": found.explosive,
+            }
+            for found in system.resonances()
+        ],
     }
 
 
@@ -157,6 +167,12 @@ def _page(system: LinearSpin, axis: str) -> list[str]:
         root = f"{real:+.4f}" if real == 0 or abs(real) >= 5e-5 else f"{real:+.0e}"
         root += f" ± {imaginary:.4f} i" if imaginary else ""
         lines.append(f"    {mode.name:<{width}}  {root}  {sign[mode.energy]}".rstrip())
+    near = system.resonances()
+    if near:
+        lines.append("  near resonances (order of their terms in the energy):")
+    for found in near:
+        what = "explosive" if found.explosive else "exchanges energy between modes"
+        lines.append(f"    {found.words} ({found.order})  {what}")
     return lines
 
 

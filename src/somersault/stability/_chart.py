@@ -9,12 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
-from somersault._core.checks import by_name, truth
+from somersault._core.checks import by_name, truth, whole_number
 from somersault._core.errors import SomersaultError
 from somersault.model import Model
 from somersault.stability._grid import Grid, Values, grid, row, unit
 from somersault.stability._growth import definite, growth_rate
 from somersault.stability._principal import Axis
+from somersault.stability._resonance_chart import resonance_fields
+from somersault.stability._resonances import MOST_ORDER
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -87,6 +89,7 @@ def chart(
     lock: str | Iterable[str] = (),
     subsystem: str | None = None,
     energy: bool = False,
+    resonances: int = 0,
 ) -> xr.Dataset:
     """Stability over two quantities.
 
@@ -104,12 +107,18 @@ def chart(
         As for `growth_rates`.
     energy : bool
         Whether to say, too, where the energy is definite.
+    resonances : int
+        Up to which order, 3 to 8, to look for frequencies of modes in ratios of whole numbers, as
+        `LinearSpin.resonances` does; none for 0.
 
     Returns
     -------
     xarray.Dataset
         With dimensions (y, x): `growth_rate` (units of Ω), `stable`, and with `energy` also
-        `definite`, where the energy is an extremum and dampers do no harm.
+        `definite`, where the energy is an extremum and dampers do no harm. With `resonances` also
+        `frequency` and `mode_energy` of each mode, which are called by the first coordinate of the
+        subsystem that they are in and numbered as they get faster, and for each resonance, with its
+        `order`, the `detuning`, which is zero on it, and where it is `explosive`.
 
     Raises
     ------
@@ -133,6 +142,8 @@ def chart(
     if x_name == y_name:
         raise SomersaultError(f"a chart of {x_name} against itself shows nothing; vary two things")
     truth("energy", energy)
+    if whole_number("resonances", resonances, 0, MOST_ORDER):
+        whole_number("resonances", resonances, 3, MOST_ORDER)
     require_open(cases, x_name, y_name)
     varied = {x_name: x_values[None, :], y_name: y_values[:, None]}
     rates = largest_growth(cases, varied)
@@ -144,12 +155,16 @@ def chart(
     if energy:
         extremum = _everywhere(cases, varied)
         data["definite"] = (dims, extremum, {"long_name": "energy is an extremum"})
+    coords: dict[str, Any] = {
+        name: (name, values, {"units": unit(cases.model, name)})
+        for name, values in ((x_name, x_values), (y_name, y_values))
+    }
+    if resonances:
+        more, names = resonance_fields(cases, varied, dims, rates <= 0, resonances)
+        data, coords = {**data, **more}, {**coords, **names}
     return xr.Dataset(
         data,
-        coords={
-            name: (name, values, {"units": unit(cases.model, name)})
-            for name, values in ((x_name, x_values), (y_name, y_values))
-        },
+        coords=coords,
         attrs=cases.attributes,
     )
 

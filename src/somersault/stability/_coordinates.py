@@ -21,11 +21,16 @@ _FIRST = ("tilt", "somersault", "twist")  # the thesis's order of the turns acro
 
 @dataclass(frozen=True)
 class Coordinates:
-    """Names, and the columns that take them to turns about axes 1, 2, 3 and joint speeds."""
+    """Names, and the columns that take them to turns about axes 1, 2, 3 and joint speeds.
+
+    `parity` (n,) says what a mirror across the axis of spin makes of a motion, if the body is its
+    own image: 1 leaves it, −1 reverses it, 0 where that is not known.
+    """
 
     names: tuple[str, ...]
     columns: Array
     attitude: Attitude
+    parity: Array
 
     def transformed(self, matrix: Array) -> Array:
         """Bᵀ A B of a matrix (…, 3 + speeds, 3 + speeds)."""
@@ -79,7 +84,9 @@ def coordinates(model: Model, axis: int, locked: frozenset[int] = frozenset()) -
     places = Attitude(
         *(names.index(called[i]) if i in model.base_ways else None for i in (before, about, after))
     )
-    return Coordinates(tuple(names), np.column_stack([c for _, c in listed]), places)
+    counts = (len(ahead) + len(antisymmetric), 1 + len(symmetric), len(alone))
+    parity = np.repeat([-1, 1, 0], counts)
+    return Coordinates(tuple(names), np.column_stack([c for _, c in listed]), places, parity)
 
 
 def motions(model: Model, locked: frozenset[int]) -> dict[int, Array]:
@@ -143,3 +150,11 @@ def locked_speeds(model: Model, lock: str | Iterable[str]) -> frozenset[int]:
     for name in spread(model, dict.fromkeys(names, 0.0), mirrored=False):
         places |= set(_places(model, name))
     return frozenset(places)
+
+
+def columns_of(model: Model, axis: int, names: Iterable[str]) -> Array:
+    """How the joint speeds move with each of some coordinates, (speeds, names)."""
+    whole = coordinates(model, axis)
+    alone = dict(zip(model.speeds, np.eye(len(model.speeds)), strict=True))
+    known = {**alone, **dict(zip(whole.names, whole.columns[3:].T, strict=True))}
+    return np.array([known[name] for name in names]).reshape(-1, len(model.speeds)).T

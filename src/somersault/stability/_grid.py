@@ -20,6 +20,7 @@ from somersault.stability._coordinates import coordinates, locked_speeds
 from somersault.stability._gyric import GyricSystem
 from somersault.stability._principal import (
     Axis,
+    PrincipalAxes,
     axes_of_spin,
     axis_index,
     body_axis,
@@ -27,10 +28,12 @@ from somersault.stability._principal import (
     require_free,
     require_inertia,
 )
+from somersault.stability._reflection import parities
 from somersault.stability._springs import finite, strengths
 from somersault.stability._steady import composite_inertia, steady_matrices
 
 Values = Mapping[str, ArrayLike]
+_SEEN = 9  # cases of a grid that are looked at for their symmetry
 _JOINT_KINDS = ("pose", "stiffness", "damping")
 _UNITS = {
     "stiffness": "k/(Ω² I)", "damping": "b/(Ω I)", "mass": "kg", "com": "m", "position": "m",
@@ -61,6 +64,20 @@ class Grid:
     def shape(self, varied: Values) -> tuple[int, ...]:
         """The shape that all quantities together have."""
         return _shape({**self.fixed, **varied})
+
+    def parities(self, varied: Values, names: Sequence[str]) -> Array:
+        """1 for coordinates that a mirror across the axis of spin leaves, −1 for those that it
+        reverses; 0 for all if it makes another body of one of some cases, taken evenly."""
+        quantities = {**self.fixed, **varied}
+        shape = _shape(quantities)
+        seen = np.linspace(0, np.prod(shape, dtype=int) - 1, _SEEN).astype(int)
+        some = {
+            name: np.broadcast_to(floats(name, v), shape).ravel()[seen]
+            for name, v in quantities.items()
+        }
+        posed_ = _posed(self.model, self.axis, some)
+        q = np.atleast_2d(posed_.q)
+        return parities(self.model, posed_.axis, names, q, posed_.names, posed_.values)
 
     @property
     def attributes(self) -> dict[str, str]:
@@ -117,9 +134,20 @@ def unit(model: Model, name: str) -> str:
     return "m" if any(name in slides for name in speeds) else "rad"
 
 
-def _system(
-    model: Model, axis: Axis | str | int, quantities: Values, lock: str | Iterable[str]
-) -> GyricSystem:
+@dataclass(frozen=True, eq=False)
+class _Posed:
+    """Poses q (…, coordinates) of bodies with some numbers of theirs open, by `names`, at `values`
+    (…, names), their principal axes, and which of them they spin about."""
+
+    kinds: dict[str, dict[str, ArrayLike]]
+    q: Array
+    names: tuple[str, ...]
+    values: Array
+    about: PrincipalAxes
+    axis: int
+
+
+def _posed(model: Model, axis: Axis | str | int, quantities: Values) -> _Posed:
     kinds = _sorted_kinds(model, quantities)
     _shape(quantities)
     q = posed(model, kinds["pose"])
@@ -127,9 +155,16 @@ def _system(
     values = _stacked([np.asarray(v, float) for v in kinds["body"].values()])
     about = axes_of_spin(model, composite_inertia(model, q, names, values))
     require_inertia(model, about.inertias)
-    index = _one_axis(model, about.inertias, axis)
-    steady = steady_matrices(model, q, about.axes[..., index], names, values)
-    chosen = coordinates(model, index + 1, locked_speeds(model, lock))
+    return _Posed(kinds, q, names, values, about, _one_axis(model, about.inertias, axis) + 1)
+
+
+def _system(
+    model: Model, axis: Axis | str | int, quantities: Values, lock: str | Iterable[str]
+) -> GyricSystem:
+    here = _posed(model, axis, quantities)
+    about, kinds = here.about, here.kinds
+    steady = steady_matrices(model, here.q, about.axes[..., here.axis - 1], here.names, here.values)
+    chosen = coordinates(model, here.axis, locked_speeds(model, lock))
     mass, gyric, of_spin = (chosen.transformed(a) for a in steady.in_axes(about.axes))
     _require_definite(model, mass)
     none = np.zeros(len(model.speeds))

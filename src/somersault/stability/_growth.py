@@ -197,12 +197,17 @@ def slow_rates(x: Array, q: Array, lost: Energy) -> Array:
     """Re(s) = −q̇ᴴ D q̇ / (xᴴ V x + q̇ᴴ M q̇) of modes (…, m) whose deviations x and joint rates q̇
     are the columns; 0 for those that move no damper, or whose energy has no sign."""
     taken = _form(q, lost.damping)
-    energies = _form(x, lost.potential) + _form(q, lost.kinetic)
-    of_x, of_q = np.abs(lost.potential), np.abs(lost.kinetic)
-    terms = _form(np.abs(x), of_x) + _form(np.abs(q), of_q)
-    damped = taken > _DAMPED * _norm(lost.damping)[..., None]
-    signed = damped & (np.abs(energies) > _SIGNED * terms)
+    energies = mode_energies(x, q, lost.potential, lost.kinetic)
+    signed = (taken > _DAMPED * _norm(lost.damping)[..., None]) & (energies != 0)
     return np.where(signed, -taken / np.where(signed, energies, 1.0), 0.0)
+
+
+def mode_energies(x: Array, q: Array, potential: Array, kinetic: Array) -> Array:
+    """xᴴ V x + q̇ᴴ M q̇ of modes (…, m) whose deviations x and joint rates q̇ are the columns; 0
+    where it has no sign."""
+    energies = _form(x, potential) + _form(q, kinetic)
+    terms = _form(np.abs(x), np.abs(potential)) + _form(np.abs(q), np.abs(kinetic))
+    return np.where(np.abs(energies) > _SIGNED * terms, energies, 0.0)
 
 
 def _form(vectors: Array, matrix: Array) -> Array:

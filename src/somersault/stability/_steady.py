@@ -49,7 +49,7 @@ def composite_inertia(
     model: Model, q: Array, parameters: tuple[str, ...] = (), values: Array | None = None
 ) -> Array:
     """Inertia about the centre of mass, (…, 3, 3), in the base's axes."""
-    return _equations(model, parameters).inertia(q, values)
+    return equations_of(model, parameters).inertia(q, values)
 
 
 def steady_matrices(
@@ -154,31 +154,32 @@ def _evaluated(function: Any, rows: Array) -> Array:
 
 
 @lru_cache(maxsize=16)
-def _equations(model: Model, parameters: tuple[str, ...]) -> Equations:
+def equations_of(model: Model, parameters: tuple[str, ...]) -> Equations:
+    """The equations of a model, compiled once."""
     return Equations(model, parameters)
 
 
 @lru_cache(maxsize=16)
 def _matrix_function(model: Model, parameters: tuple[str, ...]) -> Any:
-    expression = spin_matrices(_equations(model, parameters))
+    expression = spin_matrices(equations_of(model, parameters))
     joined = ca.vertcat(*expression.arguments.values())
     return ca.Function("spin_matrices", [joined], [ca.densify(ca.vec(expression.value.T))])
 
 
 @lru_cache(maxsize=16)
 def _matrix_kernel(model: Model, parameters: tuple[str, ...]) -> Kernel:
-    equations = _equations(model, parameters)
+    equations = equations_of(model, parameters)
     return equations.kernel(spin_matrices(equations))
 
 
 @lru_cache(maxsize=16)
 def _torque_function(model: Model, parameters: tuple[str, ...]) -> Any:
-    expression = spin_torques(_equations(model, parameters))
+    expression = spin_torques(equations_of(model, parameters))
     joined = ca.vertcat(*expression.arguments.values())
     return ca.Function("spin_torques", [joined], [ca.densify(expression.value)])
 
 
 @lru_cache(maxsize=16)
 def _torque_kernel(model: Model, parameters: tuple[str, ...]) -> Kernel:
-    equations = _equations(model, parameters)
+    equations = equations_of(model, parameters)
     return equations.kernel(spin_torques(equations))

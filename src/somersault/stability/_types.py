@@ -10,13 +10,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import by_name
+from somersault._core.checks import by_name, whole_number
+from somersault._core.errors import SomersaultError
+from somersault._core.numbers import number
 from somersault.model import Model
 from somersault.stability._coordinates import coordinates, locked_speeds
 from somersault.stability._growth import extremes, growth_rate
 from somersault.stability._gyric import Attitude, GyricSystem, coupled
 from somersault.stability._modes import Mode, modes
 from somersault.stability._principal import cycle
+from somersault.stability._reflection import odd_places, parities
+from somersault.stability._resonances import MOST_ORDER, Resonance, near
 from somersault.stability._springs import own_strengths, strengths
 
 if TYPE_CHECKING:
@@ -246,6 +250,50 @@ class LinearSpin:
     def modes(self) -> tuple[Mode, ...]:
         """The modes, one for each root with Im ≥ 0, named so that a person can read them."""
         return modes(self.spin.model, self.system)
+
+    def resonances(self, order: int = 4, within: float = 0.05) -> tuple[Resonance, ...]:
+        """Frequencies of the modes that are nearly in a ratio of whole numbers, dampers aside.
+
+        The spin's own rate is no partner: nothing in flight depends on which way a body points.
+        Of a body that is its own mirror image across the axis of spin, those are left out that the
+        mirror forbids.
+
+        Parameters
+        ----------
+        order : int
+            Up to which order, 3 to 8: 3 are those of cubic terms in the energy, 2 : 1 and
+            ω₁ + ω₂ = ω₃.
+        within : float
+            How far off the sum may be, in units of Ω.
+
+        Returns
+        -------
+        tuple of Resonance
+            Those of least order first, the nearest of them first. An explosive one of order three
+            is unstable at any size, although nothing grows in the linear equations.
+
+        Raises
+        ------
+        SomersaultError
+            For another order, or a detuning that is negative.
+
+        Examples
+        --------
+        >>> import somersault as so
+        >>> layout = so.spin("furrer", pose={"shoulder": 1.3}).linear({"shoulder": 1.16})
+        >>> for found in layout.resonances(order=3, within=0.01):
+        ...     print(found.words, found.explosive)
+        2 × 0.2683 ≈ 0.5371 Ω True
+        """
+        order, within = whole_number("order", order, 3, MOST_ORDER), number("within", within)
+        if not within >= 0:
+            raise SomersaultError(f"within is {within:g}; a detuning is not negative")
+        model, system = self.spin.model, self.system.undamped()
+        swinging = [m for m in modes(model, system) if m.energy and m.root.real == 0]
+        parity = parities(model, self.spin.axis, self.coordinates, self.spin.pose)
+        reversed_ = odd_places(parity, system.groups)
+        odd = [bool(np.any(reversed_ & (mode.shape != 0))) for mode in swinging]
+        return near(swinging, odd, order, within)
 
     @cached_property
     def subsystems(self) -> tuple[tuple[str, ...], ...]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError
-from somersault.view.charts import filled, locus, stroboscopic
+from somersault.view.charts import filled, locus, resonance_curves, stroboscopic
 from somersault.view.style import BLUE, GREEN, figure, label, literal, style
 
 if TYPE_CHECKING:
@@ -17,7 +17,11 @@ if TYPE_CHECKING:
 
 
 def stability_chart(chart: xr.Dataset) -> Figure:
-    """The stable region of a `stability.chart`; where the energy is definite, if it was asked.
+    """The stable region of a `stability.chart`; where the energy is definite, and curves on which
+    modes are in resonance, if they were asked for.
+
+    Thick curves are explosive resonances of order three, which leave nothing stable; dashed ones
+    explosive ones of higher order; dotted grey ones only exchange energy between modes.
 
     Parameters
     ----------
@@ -54,6 +58,10 @@ def stability_chart(chart: xr.Dataset) -> Figure:
                 "nowhere definite: damping destroys it",
             )
             _region(axes, x, y, chart.definite.values, GREEN, survives, does_not)
+        if "detuning" in chart:
+            resonance_curves(axes, chart)
+            if axes.get_legend_handles_labels()[0]:
+                axes.legend(loc="upper right", fontsize=8, frameon=False)
         picture.draw_without_rendering()
     return picture
 

@@ -8,9 +8,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from somersault._core.array import Array
-from somersault.view.style import BLACK, BLUE, GREY, SKY, darkening, label
+from somersault.view.style import (
+    BLACK,
+    BLUE,
+    GREY,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILION,
+    darkening,
+    label,
+)
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.axes import Axes
 
 
@@ -76,6 +87,42 @@ def band(
     if edge is not None:
         for line in (low, high):
             ax.plot(x, line, color=edge, lw=1.2, zorder=2)
+
+
+def resonance_curves(ax: Axes, chart: xr.Dataset, exchange: bool = True) -> None:
+    """Where modes are in resonance, on a `stability.chart` that was asked for it.
+
+    Parameters
+    ----------
+    ax : matplotlib.axes.Axes
+    chart : xarray.Dataset
+        With `detuning` and `explosive`.
+    exchange : bool
+        Whether to draw those, too, that only exchange energy between modes.
+    """
+    y, x = (chart[name].values for name in chart.stable.dims)
+    colors = [VERMILION, ORANGE, PURPLE, BLACK]
+    drawn = 0
+    said = False
+    for k, name in enumerate(chart.resonance.values.tolist()):
+        off, bursts = chart.detuning.values[k], chart.explosive.values[k]
+        cubic = int(chart.order[k]) == 3
+        color, way, width = colors[drawn % 4], "-" if cubic else "--", 2.2 if cubic else 1.2
+        if _zeros(ax, x, y, np.where(bursts, off, np.nan), color, way, width):
+            ax.plot([], [], way, color=color, lw=width, label=name)
+            drawn += 1
+        if exchange and _zeros(ax, x, y, np.where(bursts, np.nan, off), GREY, ":", 0.9):
+            ax.plot([], [], ":", color=GREY, lw=0.9, label=None if said else "exchange only")
+            said = True
+
+
+def _zeros(ax: Axes, x: Array, y: Array, off: Array, color: str, way: str, width: float) -> bool:
+    """The curves on which a quantity (y, x) is zero; False if there are none."""
+    known = off[np.isfinite(off)]
+    if not known.size or not known.min() <= 0 <= known.max():
+        return False
+    made = ax.contour(x, y, off, [0.0], colors=[color], linewidths=width, linestyles=way, zorder=3)
+    return any(np.size(path.vertices) for path in made.get_paths())
 
 
 def locus(
