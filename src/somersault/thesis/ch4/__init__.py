@@ -54,6 +54,18 @@ CHAPTER = Chapter(
         _entry("fig4-12", "Figure 4-12: somersaults until a quarter twist", "_lifetimes.fig_4_12"),
         _entry("sec4-3-3", "Section 4.3.3: two thousand seconds", "_long_flights.sec_4_3_3"),
         _entry(
+            "sec4-3-lives",
+            "Ten thousand somersaults, near the edge and within",
+            "_long_lives.long_lives",
+            beyond=True,
+        ),
+        _entry(
+            "fig4-12-notches",
+            "Figure 4-12's notches: resonances",
+            "_notches.notches",
+            beyond=True,
+        ),
+        _entry(
             "fig4-13", "Figure 4-13: turning the principal axes with an arm", "_arm_raised.fig_4_13"
         ),
         _entry(

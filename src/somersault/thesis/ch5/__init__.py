@@ -41,6 +41,7 @@ CHAPTER = Chapter(
             beyond=True,
         ),
         _entry("ch5-ceiling", "The doll with no ceiling", "_no_ceiling.no_ceiling", beyond=True),
+        _entry("ch5-resonance", "The doll's 2 : 1", "_doll_burst.doll_burst", beyond=True),
         _entry(
             "ch5-friction",
             "Friction in the doll's shoulders",

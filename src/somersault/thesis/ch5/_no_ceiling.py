@@ -7,11 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from somersault import stability as st
-from somersault._core.array import Array
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result, Table
-from somersault.thesis.ch4._furrer import ANGLE, STIFFNESS
+from somersault.thesis.ch4._two_to_one import two_to_one
 from somersault.thesis.ch5 import _doll as doll
 from somersault.thesis.ch5 import _simulated_launches as experiment
 from somersault.thesis.ch5._doll import BEST, WEIGHTED
@@ -64,18 +62,9 @@ def _spoken(ranges: list[tuple[float, float]]) -> str:
     return " and ".join(f"{a:.2f} to {b:.2f}" if b > a else f"{a:.2f}" for a, b in ranges)
 
 
-@cache
 def resonance() -> float:
     """The K_sh at which the arms' symmetric oscillation is twice as fast as the slow wobble."""
-
-    def slowest(subsystem: str) -> Array:
-        locus = st.root_locus(
-            WEIGHTED, (STIFFNESS, STIFFNESSES[_BETWEEN]), fixed={ANGLE: ARMS}, subsystem=subsystem
-        ).frequency.values
-        return np.where(locus > 1e-3, locus, np.inf).min(1)
-
-    off = slowest("somersault") - 2 * slowest("tilt")
-    return float(np.interp(0.0, off, STIFFNESSES[_BETWEEN]))
+    return two_to_one(WEIGHTED, ARMS).stiffness
 
 
 def no_ceiling() -> Result:
