@@ -923,6 +923,18 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
             "gravity": (0.0, 0.0, -9.81),
         },
     ),
+    "flight.rudi": lambda: (
+        so.rudi,
+        {
+            "model": "gymnast",
+            "spin": 12.0,
+            "duration": 1.0,
+            **dict.fromkeys(("pike", "side", "swing", "torso", "wrap", "back_side"), 0.1),
+            **dict.fromkeys(("swing_time", "extend_time", "wrap_time", "open_time", "stay"), 0.2),
+            **dict.fromkeys(("out_time", "back_time"), 0.2),
+            **dict.fromkeys(("extend", "centre", "early", "late", "back", "back_pike"), 0.01),
+        },
+    ),
     "flight.hula": lambda: (
         so.hula,
         {
@@ -1013,6 +1025,7 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
             "sequence": "random",
             "evaluations": 4,
             "population": 4,
+            "width": 0.2,
             "held_out": 2,
             "progress": False,
         },
@@ -1034,7 +1047,7 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     ),
     "designs.Limit": lambda: (
         lambda **given: _designed(limits=[designs.Limit(**given)]),
-        {"quantity": "twist", "most": 3.0, "share": 0.5},
+        {"quantity": "twist", "most": 3.0, "share": 0.5, "unperturbed": False},
     ),
     "designs.Mean": lambda: (
         lambda **given: _designed(objective=designs.Mean(**given)),

@@ -146,12 +146,17 @@ def test_starts_are_scattered_about_what_is_chosen() -> None:
     assert design.figure == pytest.approx(0.25, abs=0.02)
 
 
+def test_the_first_candidates_are_as_wide_as_is_said() -> None:
+    one = found(evaluations=200, population=200, width=0.01).generations[0][0]
+    assert np.std(one, 0) == pytest.approx([0.01, 0.01], rel=0.2)
+
+
 # --------------------------------------------------------------- the same starts, and restarts
 
 
 def test_all_candidates_have_the_same_starts_and_the_held_out_ones_others() -> None:
     design = found(evaluations=30)
-    planned = design.trial.planned(np.array([[1.0, 1.0], [2.0, 1.0], [3.0, 1.0]]))
+    (planned,) = design.trial.planned(np.array([[1.0, 1.0], [2.0, 1.0], [3.0, 1.0]]))
     starts = planned.varied(0, planned.count)["off"].reshape(3, -1)
     assert np.array_equal(starts[0], starts[1])
     assert np.array_equal(starts[0], starts[2])
@@ -266,7 +271,11 @@ def test_a_design_can_be_sent_to_another_process() -> None:
         ({"limits": [Limit("torque", most=1e-9)]}, "keeps to the limits"),
         ({"of": Bowl(fails_above=0.5)}, "say what they count as"),
         ({"of": 3}, "nothing that can be run"),
+        ({"of": []}, "nothing is run"),
+        ({"of": lambda y: Bowl(), "choose": {"x": Choose(between=(0.0, 1.0))}}, "missing"),
+        ({"of": lambda: Bowl(), "choose": {"x": Choose(between=(0.0, 1.0))}}, "called with .*x"),
         ({"evaluations": 1}, "evaluations"),
+        ({"width": 0.0}, "width"),
         ({"seed": -1}, "seed"),
     ],
 )

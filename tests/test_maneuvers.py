@@ -251,6 +251,33 @@ def test_hula_without_a_side_does_not_twist():
     assert abs(landing.twist) + abs(landing.tilt) < 1e-9
 
 
+def test_a_rudi_turns_once_and_twists_one_and_a_half_times_within_an_athletes_torques():
+    flown = so.rudi().fly(samples=801)
+    end = flown.landing
+    assert [end.somersault, end.tilt, end.twist] == pytest.approx(
+        [2 * np.pi, 0, -3 * np.pi], abs=0.03
+    )
+    out = so.named_pose("gymnast", "T")
+    assert end.joints == pytest.approx({n: out[n.split("_", 1)[1]] if n != "torso_twist" else 0.0
+                                        for n in end.joints}, abs=1e-9)  # fmt: skip
+    most = abs(flown.joint_torques).max("time")
+    bounds = {"hip": 250.0, "shoulder": 150.0, "torso": 150.0, "elbow": 70.0}
+    for name in most["joint_speed"].values:
+        assert most.sel(joint_speed=name) <= bounds[next(g for g in bounds if g in name)]
+
+
+def test_the_moves_of_a_rudi_are_when_its_numbers_say():
+    made = so.rudi(swing=0.02, swing_time=0.2, extend=0.01, extend_time=0.3, stay=0.1, early=-0.03)
+    legs, left, right = (
+        made.keyframes[n] for n in ("left_hip_flexion", "left_elbow", "right_elbow")
+    )
+    assert np.array(legs[:2]) == pytest.approx(np.array([(0.03, 2.2388), (0.33, 0.0)]))
+    assert right[0][0] - left[0][0] == pytest.approx(0.03)
+    assert left[2][0] - right[1][0] == pytest.approx(0.1)
+    apart = made.keyframes["left_hip_abduction"], made.keyframes["right_hip_abduction"]
+    assert [a for _, a in apart[0]] == [-a for _, a in apart[1]]
+
+
 def test_mean_tilt_of_a_nearly_symmetric_body_is_its_tilt():
     c = np.array([0.0, np.cos(0.2), -np.sin(0.2)])
     motion = RigidMotion([10, 10 - 1e-6, 1], 50 * c / [10, 10, 1])
@@ -275,6 +302,9 @@ def test_mean_tilt_of_a_nearly_symmetric_body_is_its_tilt():
         (lambda: hula(side=0.7).takeoff, "limits"),
         (lambda: hula("furrer"), "takes no named pose"),
         (lambda: hula(so.athlete(1.7, 65, shoulders="ball")), "hinges"),
+        (lambda: so.rudi(stay=0.0), "stay must be positive"),
+        (lambda: so.rudi("furrer"), "takes no named pose"),
+        (lambda: so.rudi(side=0.7), "limits"),
         (lambda: cat_turn().scaled(-1), "factor"),
     ],
 )

@@ -136,6 +136,9 @@ from .flight import (
     released as released,
 )
 from .flight import (
+    rudi as rudi,
+)
+from .flight import (
     swing as swing,
 )
 from .flight import (

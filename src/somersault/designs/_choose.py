@@ -21,6 +21,8 @@ _SCALES = ("linear", "log")
 class Choose:
     """One quantity that a design chooses, and the numbers that it moves.
 
+    Where a function makes what is run, a quantity that moves no number is given to that function.
+
     Parameters
     ----------
     between : (low, high)
@@ -54,13 +56,15 @@ class Choose:
     scale: Literal["linear", "log"] = "linear"
     unit: str = ""
 
-    def checked(self, name: str) -> Choose:
+    def checked(self, name: str, given: bool = False) -> Choose:
         """The same, if it makes sense.
 
         Parameters
         ----------
         name : str
             What it is called, for what is refused.
+        given : bool
+            Whether a function is given what moves no number.
 
         Returns
         -------
@@ -86,7 +90,7 @@ class Choose:
                 f"{where} is searched on a log scale from {low:g}; begin above 0, or search it on "
                 "a linear one"
             )
-        if not self.moves:
+        if not self.moves and not given:
             raise SomersaultError(
                 f"{where} moves no number; say what it sets, adds_to or multiplies, by names like "
                 "'joints.shoulder.stiffness'"

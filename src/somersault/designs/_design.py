@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,32 +24,37 @@ from somersault._core.checks import (
 )
 from somersault._core.errors import SomersaultError
 from somersault._core.notes import note
+from somersault._core.numbers import number
 from somersault._core.stages import stage
 from somersault.designs._candidates import check_apart
 from somersault.designs._choose import Choose, moves_of
+from somersault.designs._given import Given
 from somersault.designs._journal import Journal
 from somersault.designs._limit import Limit
+from somersault.designs._made import Made, arguments, check_arguments
 from somersault.designs._objective import Objective
 from somersault.designs._result import Design
 from somersault.designs._search import search
+from somersault.designs._source import Source
 from somersault.designs._trial import Outcome, Trial
 from somersault.ensembles import Vary
 from somersault.flight import Maneuver, flights
 from somersault.simulation import ENDED, Simulation
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from distributed.security import Security
 
 EVALUATIONS = 400
 _MOST_EVALUATIONS = 1_000_000
 _SIZE, HELD_OUT = 64, 1_024
+WIDTH = 0.25
 _MOST_SIZE = 10_000_000
 
 
 def design(
-    what: Maneuver | Simulation,
+    what: Maneuver | Simulation | Sequence[Any] | Callable[..., Any],
     choose: Mapping[str, Choose],
     vary: Mapping[str, Vary],
     objective: Objective,
@@ -59,6 +65,7 @@ def design(
     sequence: str = "sobol",
     evaluations: int = EVALUATIONS,
     population: int | None = None,
+    width: float = WIDTH,
     held_out: int = HELD_OUT,
     out: str | Path | None = None,
     threads: int | None = None,
@@ -75,11 +82,13 @@ def design(
 
     Parameters
     ----------
-    what : Maneuver or Simulation
+    what : Maneuver, Simulation, a sequence of these, or a function
         What is run: a maneuver, `flight.flights(…)` with what it reports, runs of a robot, or
-        anything else that an ensemble can run.
+        anything else that an ensemble can run. Several are cases (angular momenta, say) that are
+        each run from all starts and judged as one. A function makes it anew for every candidate,
+        of what is chosen: a motion of a few times and angles, say, and the compliance about it.
     choose : mapping of str to Choose
-        What is chosen, by name.
+        What is chosen, by name; a function is given, by name, all that moves no number.
     vary : mapping of str to Vary
         The scatter of the starts.
     objective : Objective
@@ -96,6 +105,9 @@ def design(
         How many candidates are judged at most.
     population : int, optional
         How many candidates a generation has; by default 4 + 3 ln n of n chosen quantities.
+    width : float
+        How far about the start the first candidates are scattered (standard deviation), as a part
+        of each range: little where the start is good already.
     held_out : int
         How many other starts the best and the first are judged on in the end.
     out : str or Path, optional
@@ -136,17 +148,17 @@ def design(
             f"objective is {shown(objective)}; give designs.Share, designs.Mean or designs.Quantile"
         )
     objective = objective.checked()
-    simulation = _simulation(what, objective)
+    made = callable(what) and not isinstance(what, Simulation)
     chosen = {
-        name: instance(f"choose.{name}", one, Choose).checked(name)
+        name: instance(f"choose.{name}", one, Choose).checked(name, given=made)
         for name, one in by_name("choose", choose).items()
     }
     if not chosen:
         raise SomersaultError("nothing is chosen; say what the design may change")
-    moves = {name: moves_of(simulation, name, one) for name, one in chosen.items()}
-    check_apart(moves)
+    begins = np.array([one.begins for one in chosen.values()])
     trial = Trial(
-        simulation, chosen, moves, dict(by_name("vary", vary)), objective,
+        _source(what, chosen, _table(chosen, begins[None])[0], objective, made),
+        dict(by_name("vary", vary)), objective,
         tuple(limit.checked() for limit in list_of("limits", limits, Limit)),
         whole_number("size", size, 1, _MOST_SIZE), whole_number("seed", seed, 0, 2**31), sequence,
     )  # fmt: skip
@@ -155,22 +167,24 @@ def design(
     whole_number("held_out", held_out, 2, _MOST_SIZE)
     if population is not None:
         whole_number("population", population, 2, evaluations)
+    if not 0 < number("width", width) <= 1:
+        raise SomersaultError(f"width must be above 0 and at most 1, and is {width:g}")
     truth("progress", progress)
-    begins = np.array([one.begins for one in chosen.values()])
     folder = None if out is None else file_path("out", out)
     where = {"threads": threads, "workers": workers, "scheduler": scheduler, "security": security}
     first = trial.planned(_table(chosen, begins[None]))  # refuses what cannot be run
     journal = Journal(folder, {
-        **first.specification, "versions": first.versions, "objective": canonical(objective),
+        **trial.source.specification, "cases": [one.specification for one in first],
+        "versions": first[0].versions, "objective": canonical(objective),
         "objective_kind": objective.kind, "limits": [canonical(limit) for limit in trial.limits],
-        "search": {"evaluations": evaluations, "population": population},
+        "search": {"evaluations": evaluations, "population": population, "width": width},
     })  # fmt: skip
 
     def outcome(parts: Array) -> Outcome:
-        return trial.outcome(trial.run(_table(chosen, parts), **where))
+        return trial.outcome(_table(chosen, parts), **where)
 
     with _bar(evaluations, objective, progress) as told:
-        search(begins, evaluations, population, seed, journal, outcome, told)
+        search(begins, width, evaluations, population, seed, journal, outcome, told)
     return _judged(trial, journal, begins, held_out, where)
 
 
@@ -205,6 +219,31 @@ def _table(chosen: Mapping[str, Choose], parts: Array) -> Array:
     """The values (P, n) of candidates at parts of their ways."""
     columns = [one.value(parts[:, k]) for k, one in enumerate(chosen.values())]
     return np.stack(columns, 1)
+
+
+def _source(
+    what: Any, chosen: Mapping[str, Choose], begins: Array, objective: Objective, made: bool
+) -> Source:
+    """Where candidates come from, of what is run and where the search begins (chosen,)."""
+    if made:
+        check_arguments(what, chosen)
+    read = partial(_simulations, objective=objective)
+    cases = read(what(**arguments(chosen, begins)) if made else what)
+    if not cases:
+        raise SomersaultError("nothing is run; give a Maneuver, or flight.flights(…)")
+    if len({tuple(case.variables) for case in cases}) > 1:
+        raise SomersaultError("cases report different things; let all of them report the same")
+    moves = {name: moves_of(cases[0], name, one) for name, one in chosen.items()}
+    check_apart(moves)
+    if made:
+        return Made(cases, chosen, moves, read, what)
+    return Given(cases, chosen, moves, read)
+
+
+def _simulations(given: Any, objective: Objective) -> tuple[Simulation, ...]:
+    """One or several that are run."""
+    several = isinstance(given, Sequence) and not isinstance(given, str)
+    return tuple(_simulation(one, objective) for one in (given if several else (given,)))
 
 
 def _simulation(what: Any, objective: Objective) -> Simulation:

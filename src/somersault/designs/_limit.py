@@ -7,9 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import instance, text
+from somersault._core.checks import instance, text, truth
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
+
+_MOST_BEYOND = 1e3
 
 
 @dataclass(frozen=True)
@@ -25,6 +27,9 @@ class Limit:
         What |quantity| may be at most.
     share : float
         Of the runs, in how many at least; those that failed are left out.
+    unperturbed : bool
+        Whether it is for the one run in which nothing is scattered, and not for the scattered ones;
+        it must not fail.
 
     Examples
     --------
@@ -38,6 +43,7 @@ class Limit:
     quantity: str
     most: float
     share: float = 1.0
+    unperturbed: bool = False
 
     def checked(self) -> Limit:
         """The same, if it makes sense.
@@ -55,6 +61,7 @@ class Limit:
         text("limit.quantity", self.quantity)
         if number("limit.most", self.most) <= 0:
             raise SomersaultError(f"limit.most must be positive, and is {self.most:g}")
+        truth("limit.unperturbed", self.unperturbed)
         if not 0 < number("limit.share", self.share) <= 1:
             raise SomersaultError(f"limit.share must be above 0 and at most 1, not {self.share:g}")
         return self
@@ -70,6 +77,6 @@ class Limit:
         -------
         ndarray, (P,)
         """
-        sizes = np.where(failed, 0.0, np.abs(values))
+        sizes = np.where(failed, np.inf if self.unperturbed else 0.0, np.abs(values))
         least = np.quantile(sizes, self.share, axis=-1, method="inverted_cdf")
-        return np.maximum(least / self.most - 1, 0.0)
+        return np.clip(least / self.most - 1, 0.0, _MOST_BEYOND)

@@ -72,7 +72,7 @@ class Design:
     @property
     def figures(self) -> Array:
         """The objective's figure of the first and the best candidate on held-out starts, (2,)."""
-        return self.held_out.outcome(self.rows).figures
+        return self.held_out.figures(self.rows)
 
     @property
     def figure(self) -> float:
@@ -91,10 +91,14 @@ class Design:
         return self.trial.objective.interval(self.rows[self.trial.objective.quantity][1], failed[1])
 
     @property
+    def cases(self) -> tuple[Candidates, ...]:
+        """All that is run, with what is chosen in it: one simulation, or several."""
+        return self.held_out.source.candidates(self.table[1:])[0].cases
+
+    @property
     def simulation(self) -> Candidates:
-        """What is run, with what is chosen in it: for `so.ensemble`."""
-        trial = self.held_out
-        return Candidates(trial.simulation, trial.chosen, trial.moves, self.table[1:])
+        """What is run, with what is chosen in it: for `so.ensemble`. Of several, the first."""
+        return self.cases[0]
 
     @property
     def numbers(self) -> dict[tuple[Any, ...], float]:
@@ -106,9 +110,9 @@ class Design:
         """What is reported of the first and the best candidate from held-out starts, labelled."""
         import xarray as xr
 
-        planned = self.held_out.planned(self.table)
-        count = next(iter(self.rows.values())).shape[1]
-        varied = planned.varied(0, count)
+        planned = self.held_out.ensemble(self.held_out.simulation, self.held_out.vary)
+        varied = planned.varied(0, planned.count)
+        count = len(self.held_out.source.cases)
         known = self.trial.simulation.variables
         data = {}
         for name, x in self.rows.items():
@@ -116,7 +120,9 @@ class Design:
             words = {} if of is None else {"units": of.unit, "long_name": of.words}
             data[name] = ((CANDIDATE, "start"), x, words)
         coordinates: dict[str, Any] = {CANDIDATE: list(CANDIDATES)}
-        coordinates |= {n: ("start", x) for n, x in varied.items() if n != CANDIDATE}
+        coordinates |= {n: ("start", np.tile(x, count)) for n, x in varied.items()}
+        if count > 1:
+            coordinates["case"] = ("start", np.repeat(np.arange(count), planned.count))
         return xr.Dataset(data, coordinates, {"objective": self.trial.objective.words})
 
     @property
@@ -184,9 +190,7 @@ class Design:
             parts[k, :, k] = np.clip(self.parts[k] + by, 0.0, 1.0)
         flat = parts.reshape(-1, len(chosen))
         table = np.stack([one.value(flat[:, k]) for k, one in enumerate(chosen)], 1)
-        figures = self.held_out.outcome(self.held_out.run(table)).figures.reshape(
-            len(chosen), steps
-        )
+        figures = self.held_out.figures(self.held_out.run(table))
         values = np.stack([one.value(parts[k, :, k]) for k, one in enumerate(chosen)])
         along = ("quantity", "step")
         return xr.Dataset(
@@ -220,12 +224,15 @@ class Design:
         Parameters
         ----------
         **changes
-            `vary`, `size`, `seed`, `sequence`, or another `simulation` with the same numbers, as
-            that of another angular momentum.
+            `vary`, `size`, `seed`, `sequence`, or as `simulation` something else with the same
+            numbers (another function, where one makes what is run), as of another angular
+            momentum.
 
         Returns
         -------
         Design
         """
+        if "simulation" in changes:
+            changes["source"] = self.held_out.source.of(changes.pop("simulation"))
         other = replace(self.held_out, **changes)
         return replace(self, held_out=other, rows=other.run(self.table))

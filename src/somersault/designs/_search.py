@@ -10,16 +10,17 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault.designs._journal import Journal
+from somersault.designs._penalty import Penalty
 from somersault.designs._trial import Outcome
-
-_WIDTH = 0.25  # of the ranges, at first
 
 
 def search(
-    begins: Array, evaluations: int, population: int | None, seed: int, journal: Journal,
+    begins: Array, width: float, evaluations: int, population: int | None, seed: int,
+    journal: Journal,
     outcome: Callable[[Array], Outcome], told: Callable[[int, Outcome], None],
 ) -> None:  # fmt: skip
-    """Search within the unit cube from a point (n,), generation by generation.
+    """Search within the unit cube from a point (n,), at first so wide about it, generation by
+    generation.
 
     `outcome` says what candidates (P, n) come to, and `told` is called with how many have been
     judged and what the last came to. All goes into the journal; what is there already is not run
@@ -37,8 +38,8 @@ def search(
         }  # fmt: skip
         if population is not None:
             options["popsize"] = population
-        evolution = cma.CMAEvolutionStrategy(begins, _WIDTH, options)
-        judged = 0
+        evolution = cma.CMAEvolutionStrategy(begins, width, options)
+        judged, penalty = 0, Penalty()
         while not evolution.stop() and judged < evaluations:
             candidates = np.array(evolution.ask())
             candidates = np.clip(candidates, 0.0, 1.0)
@@ -47,5 +48,5 @@ def search(
                 known = outcome(candidates)
                 journal.add(candidates, known)
             judged += len(candidates)
-            evolution.tell(list(candidates), list(known.ranks))
+            evolution.tell(list(candidates), list(penalty.of(known)))
             told(judged, known)

@@ -10,7 +10,7 @@ from typing import Any, get_type_hints
 from somersault._core.checks import file_path, one_of
 from somersault._core.errors import SomersaultError
 from somersault.designs._choose import Choose
-from somersault.designs._design import EVALUATIONS, HELD_OUT, design
+from somersault.designs._design import EVALUATIONS, HELD_OUT, WIDTH, design
 from somersault.designs._limit import Limit
 from somersault.designs._objective import Objective
 from somersault.designs._result import Design
@@ -26,6 +26,7 @@ class Search:
 
     evaluations: int = EVALUATIONS
     population: int | None = None
+    width: float = WIDTH
     held_out: int = HELD_OUT
 
 
@@ -74,7 +75,7 @@ class DesignSpec:
             plan.simulation, self.choose, plan.vary, self.objective, limits=self.limits,
             size=plan.size, seed=plan.seed, sequence=plan.sequence,
             evaluations=search.evaluations, population=search.population,
-            held_out=search.held_out, **where,
+            width=search.width, held_out=search.held_out, **where,
         )  # fmt: skip
 
 

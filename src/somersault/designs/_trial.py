@@ -13,11 +13,15 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.designs._candidates import CANDIDATE, Candidates
-from somersault.designs._choose import Choose, Move
+from somersault.designs._choose import Choose
 from somersault.designs._limit import Limit
 from somersault.designs._objective import Objective
+from somersault.designs._source import Group, Source
 from somersault.ensembles import Plan, Vary, carried_out, plan
 from somersault.simulation import ENDED, Simulation
+
+NOT_MADE = 1e6
+"""How far beyond its limits a candidate is that cannot be made: farther than any other."""
 
 
 @dataclass(frozen=True)
@@ -32,12 +36,6 @@ class Outcome:
     costs: Array
     beyond: Array
 
-    @property
-    def ranks(self) -> Array:
-        """What a search makes small, (P,): those that keep to the limits come first."""
-        worst = np.nanmax(np.abs(self.costs), initial=1.0)
-        return np.where(self.beyond > 0, 2 * worst + self.beyond, self.costs)
-
 
 @dataclass(frozen=True, eq=False)
 class Trial:
@@ -45,10 +43,8 @@ class Trial:
 
     Parameters
     ----------
-    simulation : Simulation
-    chosen : mapping of str to Choose
-    moves : mapping of str to tuple of Move
-        The numbers that each of them moves.
+    source : Source
+        Of the candidates.
     vary : mapping of str to Vary
         The scatter.
     objective : Objective
@@ -57,9 +53,7 @@ class Trial:
         Of the scatter, as for an ensemble.
     """
 
-    simulation: Simulation
-    chosen: Mapping[str, Choose]
-    moves: Mapping[str, tuple[Move, ...]]
+    source: Source
     vary: Mapping[str, Vary]
     objective: Objective
     limits: tuple[Limit, ...]
@@ -67,23 +61,61 @@ class Trial:
     seed: int
     sequence: str
 
-    def planned(self, table: Array) -> Plan:
-        """The ensemble of candidates (P, chosen): their runs from the same starts."""
-        candidates = Candidates(self.simulation, self.chosen, self.moves, table)
-        which = Vary(sets=CANDIDATE, values=np.arange(len(table)))
-        return plan(
-            candidates, {CANDIDATE: which, **self.vary}, self.size, self.seed, self.sequence
-        )
+    @property
+    def simulation(self) -> Simulation:
+        """What is run of the candidate with which the search begins."""
+        return self.source.cases[0]
+
+    @property
+    def chosen(self) -> Mapping[str, Choose]:
+        """What is chosen."""
+        return self.source.chosen
+
+    def planned(self, table: Array) -> list[Plan]:
+        """The ensembles of candidates (P, chosen) that are run first."""
+        return [self.ensemble(case, self.vary) for case in self.source.candidates(table)[0].cases]
+
+    def ensemble(self, simulation: Simulation, vary: Mapping[str, Vary]) -> Plan:
+        """The ensemble of a simulation; of candidates, their runs from the same starts."""
+        which: dict[str, Vary] = {}
+        if isinstance(simulation, Candidates):
+            which[CANDIDATE] = Vary(sets=CANDIDATE, values=np.arange(len(simulation.table)))
+        size = self.size if vary else None
+        return plan(simulation, {**which, **vary}, size, self.seed, self.sequence)
 
     def run(self, table: Array, **where: Any) -> dict[str, Array]:
-        """What is reported of the runs, (P, N) each; `where` is as for `carried_out`."""
-        planned = self.planned(table)
-        if any(value is not None for value in where.values()):
-            data = carried_out(planned, **where).dataset
-            rows = {str(name): data[name].values for name in data.data_vars}
-        else:
-            rows = planned.run(0, planned.count)
-        return {n: x.reshape(len(table), -1) for n, x in rows.items() if n in self._read}
+        """What is reported of the runs of candidates (P, chosen): (P, N) each, or of several cases
+        (P, cases · N). `where` is as for `carried_out`."""
+        return self._rows(self.source.candidates(table), self.vary, where)
+
+    def _rows(
+        self, groups: list[Group], vary: Mapping[str, Vary], where: Mapping[str, Any]
+    ) -> dict[str, Array]:
+        parts = [self._of_group(group, vary, where) for group in groups]
+        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+    def _of_group(
+        self, group: Group, vary: Mapping[str, Vary], where: Mapping[str, Any]
+    ) -> dict[str, Array]:
+        if not group.cases:
+            return self._not_made(group.count, vary)
+        parts = []
+        for case in group.cases:
+            planned = self.ensemble(case, vary)
+            if any(value is not None for value in where.values()):
+                data = carried_out(planned, **where).dataset
+                rows = {str(name): data[name].values for name in data.data_vars}
+            else:
+                rows = planned.run(0, planned.count)
+            parts.append({n: x.reshape(group.count, -1) for n, x in rows.items()})
+        return {name: np.concatenate([part[name] for part in parts], 1) for name in self._read}
+
+    def _not_made(self, count: int, vary: Mapping[str, Vary]) -> dict[str, Array]:
+        """What is reported of candidates that cannot be made: none of their runs can begin."""
+        known, endings = self.simulation.variables, self.simulation.endings
+        shape = count, len(self.source.cases) * self.ensemble(self.simulation, vary).count
+        rows = {n: np.full(shape, known[n].fill, known[n].dtype) for n in self._read - {ENDED}}
+        return rows | {ENDED: np.full(shape, endings.code(endings.unsound), np.uint8)}
 
     @cached_property
     def _read(self) -> set[str]:
@@ -100,16 +132,25 @@ class Trial:
         endings = self.simulation.endings
         return np.isin(ended, [endings.code(word) for word in endings.failed])
 
-    def outcome(self, rows: Mapping[str, Array]) -> Outcome:
-        """What the candidates of some runs came to."""
-        failed = self.failed(rows[ENDED])
-        values = rows[self.objective.quantity]
-        beyond = np.zeros(len(values))
-        for limit, names in zip(self.limits, self._limited, strict=True):
-            beyond += sum(limit.beyond(rows[name], failed) for name in names)
-        return Outcome(
-            self.objective.figures(values, failed), self.objective.costs(values, failed), beyond
+    def figures(self, rows: Mapping[str, Array]) -> Array:
+        """The objective's figures of the runs of some candidates."""
+        return self.objective.figures(rows[self.objective.quantity], self.failed(rows[ENDED]))
+
+    def outcome(self, table: Array, **where: Any) -> Outcome:
+        """What candidates (P, chosen) come to."""
+        groups = self.source.candidates(table)
+        rows = self._rows(groups, self.vary, where)
+        alone = self._rows(groups, {}, {}) if any(x.unperturbed for x in self.limits) else rows
+        beyond = np.repeat(
+            [0.0 if group.cases else NOT_MADE for group in groups],
+            [group.count for group in groups],
         )
+        for limit, names in zip(self.limits, self._limited, strict=True):
+            judged = alone if limit.unperturbed else rows
+            failed = self.failed(judged[ENDED])
+            beyond += sum(limit.beyond(judged[name], failed) for name in names)
+        costs = self.objective.costs(rows[self.objective.quantity], self.failed(rows[ENDED]))
+        return Outcome(self.figures(rows), costs, beyond)
 
     def check(self) -> None:
         """SomersaultError for a quantity that is not reported, and where nothing is scattered."""
@@ -127,7 +168,7 @@ class Trial:
             )
         if CANDIDATE in self.vary:
             raise SomersaultError(f"vary.{CANDIDATE} is what candidates are called; rename it")
-        sets = {target for row in self.moves.values() for target in (m.name for m in row)}
+        sets = {move.name for row in self.source.moves.values() for move in row}
         for name, vary in self.vary.items():
             if vary.adds:
                 continue

@@ -26,6 +26,7 @@ from somersault.flight._prop import Prop
 from somersault.flight._release import Release, released, ridden
 from somersault.flight._replay import Replay
 from somersault.flight._report import ENDINGS, Report, landing_error, landing_target
+from somersault.flight._rudi import rudi
 from somersault.flight._sensitivity import sensitivity, transition
 from somersault.flight._spec import KEYS
 from somersault.flight._strange import BROKE_OFF
@@ -73,6 +74,7 @@ __all__ = [
     "released",
     "ridden",
     "rigid_continuation",
+    "rudi",
     "sensitivity",
     "swing",
     "torque_twist",

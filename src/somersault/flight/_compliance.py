@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -111,7 +112,7 @@ def compliant(
     inertias = np.ones(len(model.speeds))
     following = isinstance(pose, str) and pose == _FOLLOWING
     if not following:
-        inertias = Equations(model).outboard_inertia(_pose(model, begun, pose))
+        inertias = _equations(model).outboard_inertia(_pose(model, begun, pose))
     setups = _others(joints)
     for joint, does in on_path:
         inertia = float(inertias[model.speed_slice(joint.name).start])
@@ -206,6 +207,12 @@ def against(model: str | Model, takeoff: Takeoff, replay: Replay) -> Replay:
     momentum = with_momentum(model, takeoff).angular_momentum
     angles = (takeoff.somersault, takeoff.tilt, takeoff.twist)
     return replace(replay, nominal_angles=angles, nominal_momentum=momentum)
+
+
+@lru_cache(maxsize=8)
+def _equations(model: Model) -> Equations:
+    """Of a model, compiled once however many motions it gets compliance for."""
+    return Equations(model)
 
 
 def _begun(model: Model, takeoff: Takeoff) -> Start:
