@@ -31,7 +31,7 @@ def fly(takeoff: Takeoff, seconds: float = SECONDS, **options: Any) -> so.Flight
     return so.fly(GYMNAST, takeoff, seconds, **{"accuracy": 1e-11, **options})
 
 
-def compliant(natural_frequency: float = 25.0, zeta: float = ZETA, **options: Any) -> Takeoff:
+def compliant(natural_frequency: Any = 25.0, zeta: Any = ZETA, **options: Any) -> Takeoff:
     given = {"pose": so.named_pose("gymnast", "wrap"), **options}
     return so.compliant(GYMNAST, prescribed(), natural_frequency, zeta, **given)
 
@@ -132,6 +132,19 @@ def test_energy_is_kept_about_a_path_that_stays() -> None:
     assert flight.momentum_drift < 1e-9
     damped = fly(so.compliant(GYMNAST, still, 25.0, ZETA, pose=0.0, tape=False), 1.0)
     assert damped.kinetic_energy[-1] < 0.999 * flight.kinetic_energy[0]
+
+
+def test_gains_by_joint_are_those_of_each_alone() -> None:
+    """A joint's gains are those that it has where all have its frequency and ratio."""
+    given = {"*shoulder*": 18.0, "left_elbow": 30.0, "right_elbow": 31.0, "*hip*": 22.0}
+    ratios = {"*_*_*": 0.5, "*elbow": 0.9, "torso_twist": 0.6}
+    soft = compliant({**given, "torso_twist": 12.0}, ratios).joints
+    of = {"left_shoulder_flexion": (18.0, 0.5), "right_elbow": (31.0, 0.9)}
+    for name, (frequency, ratio) in {**of, "torso_twist": (12.0, 0.6)}.items():
+        alone = compliant(frequency, ratio).joints[name]
+        assert soft[name] == alone
+    pair = compliant({"elbow": 30.0, "*_*_*": 20.0, "torso_twist": 20.0}).joints
+    assert pair["right_elbow"].stiffness == compliant(30.0).joints["right_elbow"].stiffness
 
 
 def test_springs_of_the_model_do_not_act_beside_compliance() -> None:
@@ -323,6 +336,12 @@ MISTAKES = [
     (lambda: _soft(np.nan), "natural_frequency"),
     (lambda: _soft("fast"), "natural_frequency"),
     (lambda: _soft(None), "natural_frequency"),
+    (lambda: _soft({"elbow": -1.0}), "natural_frequency"),
+    (lambda: _soft({"elbow": "fast"}), "natural_frequency elbow"),
+    (lambda: _soft({"*shoulder*": 20.0}), "none of the joints on paths; there are left_elbow"),
+    (lambda: _soft({"elbow": 20.0, "left_elbow": 20.0}), "given twice"),
+    (lambda: _soft({}), "but not of left_elbow"),
+    (lambda: _soft(zeta={"elbow": -0.1}), "damping_ratio"),
     (lambda: _soft(zeta=-0.1), "damping_ratio"),
     (lambda: _soft(zeta=np.inf), "damping_ratio"),
     (lambda: _soft(pose={"knee": 0.1}), "knee"),

@@ -198,6 +198,20 @@ def test_a_named_pose_and_what_there_is_instead(recording: Path) -> None:
     assert so.Maneuver.read(recording / "spec.toml").takeoff.joints["left_elbow"].stiffness == soft
 
 
+def test_gains_by_joint_are_those_of_python(recording: Path) -> None:
+    text = RECORDED + '[compliance]\npose = "wrap"\nnatural_frequency = 60\ndamping_ratio = '
+    (recording / "spec.toml").write_text(text + '{"*elbow*" = 0.4, "*_*_*" = 0.7}\n')
+    read = so.Maneuver.read(recording / "spec.toml").takeoff.joints
+    (recording / "spec.toml").write_text(text + "0.4\n")
+    alike = so.Maneuver.read(recording / "spec.toml").takeoff.joints
+    assert read["left_elbow"].damping == alike["left_elbow"].damping
+    ratio = read["left_hip_flexion"].damping / alike["left_hip_flexion"].damping
+    assert ratio == pytest.approx(0.7 / 0.4)
+    (recording / "spec.toml").write_text(text + '"soft"\n')
+    with pytest.raises(so.SomersaultError, match="numbers by joint"):
+        so.Maneuver.read(recording / "spec.toml")
+
+
 def test_a_pair_and_its_side_are_still_one_too_many(recording: Path) -> None:
     own = '[joints.elbow]\nmotion = "locked"\n[joints.left_elbow]\nmotion = "locked"\n'
     (recording / "spec.toml").write_text(RECORDED + own)

@@ -21,6 +21,7 @@ from somersault._core.numbers import number
 from somersault.attitude import matrix_from_quaternion
 from somersault.dynamics import Equations
 from somersault.flight._batch import Batch
+from somersault.flight._gains import each
 from somersault.flight._replay import Replay
 from somersault.flight._start import Start
 from somersault.flight._takeoff import Takeoff, require_takeoff
@@ -42,8 +43,8 @@ _FOLLOWING = "following"
 def compliant(
     model: str | Model,
     takeoff: Takeoff,
-    natural_frequency: float,
-    damping_ratio: float = 0.7,
+    natural_frequency: float | Mapping[str, float],
+    damping_ratio: float | Mapping[str, float] = 0.7,
     *,
     pose: Mapping[str, float] | float | str,
     tape: bool = True,
@@ -60,10 +61,11 @@ def compliant(
     model : str or Model
     takeoff : Takeoff
         Its prescribed joints become compliant; the others must be locked or coupled.
-    natural_frequency : float
-        ω_n, rad/s.
-    damping_ratio : float
-        ζ.
+    natural_frequency : float or mapping of str to float
+        ω_n, rad/s, of all joints, or by joint: a pair by the name that it shares, joints alike by
+        one with a *, as "*shoulder*".
+    damping_ratio : float or mapping of str to float
+        ζ, likewise.
     pose : mapping, float or str
         The pose in which I is taken: angles by joint (rad), the motion's own at a time (s), an
         athlete's named pose ("wrap"), or "following" it as it changes.
@@ -91,6 +93,8 @@ def compliant(
     >>> soft = so.compliant("gymnast", twist.takeoff, 30.0, pose="wrap")
     >>> soft.joints["left_shoulder_abduction"].motion
     'compliant'
+    >>> by_joint = {"*shoulder*": 20.0, "elbow": 30.0, "*hip*": 25.0, "torso_twist": 15.0}
+    >>> soft = so.compliant("gymnast", twist.takeoff, by_joint, pose="wrap")
     """
     model = load(model)
     begun = _begun(model, takeoff)
@@ -102,13 +106,15 @@ def compliant(
     on_path = [(plan.joint, plan.does) for plan in joints if isinstance(plan.does, Prescribed)]
     if not on_path:
         raise SomersaultError("nothing is prescribed in this takeoff, so nothing can be compliant")
-    omega_n = number("natural_frequency", natural_frequency)
-    zeta = number("damping_ratio", damping_ratio)
-    if omega_n <= 0 or zeta < 0:
-        raise SomersaultError(
-            f"natural_frequency must be positive and damping_ratio not negative, and they are "
-            f"{omega_n:g} and {zeta:g}"
-        )
+    names = [joint.name for joint, _ in on_path]
+    frequencies = each("natural_frequency", natural_frequency, model, names)
+    ratios = each("damping_ratio", damping_ratio, model, names)
+    for name in names:
+        if frequencies[name] <= 0 or ratios[name] < 0:
+            raise SomersaultError(
+                f"natural_frequency must be positive and damping_ratio not negative, and they are "
+                f"{frequencies[name]:g} and {ratios[name]:g}"
+            )
     inertias = np.ones(len(model.speeds))
     following = isinstance(pose, str) and pose == _FOLLOWING
     if not following:
@@ -116,9 +122,10 @@ def compliant(
     setups = _others(joints)
     for joint, does in on_path:
         inertia = float(inertias[model.speed_slice(joint.name).start])
-        stopped = joint.limits is not None
+        omega_n, stopped = frequencies[joint.name], joint.limits is not None
         setups[joint.name] = softened(
-            does, stiffness=omega_n**2 * inertia, damping=2 * zeta * omega_n * inertia,
+            does, stiffness=omega_n**2 * inertia,
+            damping=2 * ratios[joint.name] * omega_n * inertia,
             following=following, stop_stiffness=stop_stiffness if stopped else 0.0,
             stop_damping=stop_damping if stopped else 0.0,
         )  # fmt: skip

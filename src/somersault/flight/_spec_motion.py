@@ -17,6 +17,7 @@ from somersault.motion import read_motion
 from somersault.spec import Unfit, read_as
 
 Pose = float | str | Mapping[str, Any]
+Gain = float | Mapping[str, Any]
 _READ = ("names", "ignore_others", "degrees", "cutoff", "rate", "start", "stop", "gap", "slack")
 
 
@@ -62,9 +63,9 @@ class Recording:
 class Compliance:
     """[compliance]: the body gives way about what it prescribes; keys as in `compliant`."""
 
-    natural_frequency: float | None = None
+    natural_frequency: Gain | None = None
     pose: Pose | None = None
-    damping_ratio: float = 0.7
+    damping_ratio: Gain = 0.7
     tape: bool = True
     stop_stiffness: float = 0.0
     stop_damping: float = 0.0
@@ -103,4 +104,12 @@ def _pose(value: Any, _: Any) -> Any:
     return value
 
 
+def _gain(value: Any, _: Any) -> Any:
+    if isinstance(value, bool) or not isinstance(value, int | float | Mapping):
+        raise Unfit("a number, or numbers by joint", value)
+    return value
+
+
 read_as(Pose | None, _pose)
+for _kind in (Gain, Gain | None):
+    read_as(_kind, _gain)

@@ -57,8 +57,8 @@ class Variants:
 
     def compliant(
         self,
-        natural_frequency: float,
-        damping_ratio: float = 0.7,
+        natural_frequency: float | Mapping[str, float],
+        damping_ratio: float | Mapping[str, float] = 0.7,
         *,
         pose: Mapping[str, float] | float | str,
         **options: Any,
@@ -67,9 +67,9 @@ class Variants:
 
         Parameters
         ----------
-        natural_frequency : float
-            rad/s.
-        damping_ratio : float
+        natural_frequency : float or mapping of str to float
+            rad/s, of all joints or by joint.
+        damping_ratio : float or mapping of str to float
         pose : mapping of str to float, float or str
             As for `somersault.compliant`.
         **options
