@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -127,3 +128,21 @@ def test_a_motion_is_chosen_with_the_compliance_about_it() -> None:
         flown = soft.off_nominal(twist=float(off)).fly().landing
         assert design.rows["twist"][1, k] == pytest.approx(flown.twist, abs=1e-7)
         assert abs(flown.joints["left_shoulder"] - 1.4 - lift) > 1e-6  # it does give way
+
+
+def test_a_search_of_made_candidates_goes_on_where_it_stopped(tmp_path: Any) -> None:
+    def made(by: float) -> Bowl:
+        return Moved(by=by)
+
+    choose = {"x": BOTH["x"], "by": Choose(between=(-0.5, 0.75))}
+    limits = [Limit("torque", most=1.2)]  # its weight is what it was at the stop
+    whole = found(choose, of=made, limits=limits, out=tmp_path, evaluations=60)
+    kept = json.loads((tmp_path / "design.json").read_text())
+    for row in kept["generations"]:
+        assert len(row["costs"]) == len(row["candidates"])
+    kept["generations"] = kept["generations"][:4]
+    (tmp_path / "design.json").write_text(json.dumps(kept))
+    again = found(choose, of=made, limits=limits, out=tmp_path, evaluations=60)
+    assert again.table.tobytes() == whole.table.tobytes()
+    with pytest.raises(SomersaultError, match="holds another design"):
+        found(choose, of=lambda by: Moved(by=by), limits=limits, out=tmp_path, evaluations=60)

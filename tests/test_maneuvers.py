@@ -267,15 +267,29 @@ def test_a_rudi_turns_once_and_twists_one_and_a_half_times_within_an_athletes_to
 
 
 def test_the_moves_of_a_rudi_are_when_its_numbers_say():
-    made = so.rudi(swing=0.02, swing_time=0.2, extend=0.01, extend_time=0.3, stay=0.1, early=-0.03)
+    made = so.rudi(
+        pike=2.2, swing=0.02, swing_time=0.2, extend=0.01, extend_time=0.3, stay=0.1, early=-0.03
+    )
     legs, left, right = (
         made.keyframes[n] for n in ("left_hip_flexion", "left_elbow", "right_elbow")
     )
-    assert np.array(legs[:2]) == pytest.approx(np.array([(0.03, 2.2388), (0.33, 0.0)]))
+    assert np.array(legs[:2]) == pytest.approx(np.array([(0.03, 2.2), (0.33, 0.0)]))
     assert right[0][0] - left[0][0] == pytest.approx(0.03)
     assert left[2][0] - right[1][0] == pytest.approx(0.1)
     apart = made.keyframes["left_hip_abduction"], made.keyframes["right_hip_abduction"]
     assert [a for _, a in apart[0]] == [-a for _, a in apart[1]]
+
+
+def test_a_rudi_mirrors():
+    names = ("side", "torso", "early", "late", "back_side")
+    numbers = {"side": 0.23, "torso": -0.5, "early": -0.02, "late": 0.09, "back_side": -0.4}
+    right, left = (
+        so.rudi(**{n: sign * numbers[n] for n in names}).fly(accuracy=SHARP).landing
+        for sign in (1, -1)
+    )
+    assert [left.somersault, left.tilt, left.twist] == pytest.approx(
+        [right.somersault, -right.tilt, -right.twist], abs=1e-7
+    )
 
 
 def test_mean_tilt_of_a_nearly_symmetric_body_is_its_tilt():
@@ -302,7 +316,7 @@ def test_mean_tilt_of_a_nearly_symmetric_body_is_its_tilt():
         (lambda: hula(side=0.7).takeoff, "limits"),
         (lambda: hula("furrer"), "takes no named pose"),
         (lambda: hula(so.athlete(1.7, 65, shoulders="ball")), "hinges"),
-        (lambda: so.rudi(stay=0.0), "stay must be positive"),
+        (lambda: so.rudi(stay=0.0), "stay 0 s .* positive"),
         (lambda: so.rudi("furrer"), "takes no named pose"),
         (lambda: so.rudi(side=0.7), "limits"),
         (lambda: cat_turn().scaled(-1), "factor"),

@@ -8,7 +8,8 @@ from somersault._core.array import Array
 from somersault.designs._trial import NOT_MADE, Outcome
 
 _WITHIN = 0.4  # of the candidates: about so many are to keep to the limits
-_RATE = 0.5  # of the weight's logarithm, a generation
+_RISES, _FALLS = 1.0, 0.25  # the weight's logarithm, a generation, for what is off that
+_LEAST = 0.01  # of the first weight
 
 
 class Penalty:
@@ -19,7 +20,7 @@ class Penalty:
     """
 
     def __init__(self) -> None:
-        self._weight: float | None = None
+        self._weight = self._first = 0.0
 
     def of(self, outcome: Outcome) -> Array:
         """What is to be small, (P,), of the next generation of candidates.
@@ -33,11 +34,13 @@ class Penalty:
         ndarray, (P,)
         """
         costs, beyond = outcome.costs, outcome.beyond
-        if self._weight is None:
-            over = beyond[(beyond > 0) & (beyond < NOT_MADE)]
-            if not over.size:
-                return costs + beyond
+        over = beyond[(beyond > 0) & (beyond < NOT_MADE)]
+        if not over.size:
+            return costs + beyond  # nothing is told of the weight
+        if not self._first:
             low, high = np.quantile(costs, [0.25, 0.75])
-            self._weight = float((high - low or 1.0) / np.median(over))
-        self._weight *= float(np.exp(_RATE * (_WITHIN - np.mean(beyond <= 0))))
+            self._first = self._weight = float((high - low or 1.0) / np.median(over))
+        off = _WITHIN - float(np.mean(beyond <= 0))
+        self._weight *= float(np.exp((_RISES if off > 0 else _FALLS) * off))
+        self._weight = max(self._weight, _LEAST * self._first)
         return costs + self._weight * beyond

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from math import pi
 
-from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 from somersault.flight._maneuver import Maneuver
-from somersault.flight._poses import named
+from somersault.flight._poses import named, seconds
 from somersault.flight._takeoff import Takeoff
 from somersault.model import Model, load
 
@@ -26,33 +25,33 @@ def rudi(
     model: str | Model = "gymnast",
     *,
     spin: float = 12.6,
-    duration: float = 1.0178,
-    pike: float = 2.2388,
-    side: float = 0.2629,
-    swing: float = 0.0050,
-    swing_time: float = 0.2195,
-    extend: float = 0.0156,
-    extend_time: float = 0.2948,
-    centre: float = -0.2564,
-    torso: float = -0.5998,
-    wrap: float = 0.0320,
-    wrap_time: float = 0.2855,
-    early: float = -0.0004,
-    stay: float = 0.0732,
-    open_time: float = 0.2471,
-    late: float = 0.0964,
-    back: float = -0.0880,
-    back_side: float = -0.4791,
-    out_time: float = 0.4401,
-    back_time: float = 0.2124,
-    back_pike: float = 1.1996,
+    duration: float = 1.0731,
+    pike: float = 2.3307,
+    side: float = 0.2311,
+    swing: float = 0.0087,
+    swing_time: float = 0.2375,
+    extend: float = 0.0028,
+    extend_time: float = 0.3262,
+    centre: float = -0.2083,
+    torso: float = -0.5903,
+    wrap: float = 0.0567,
+    wrap_time: float = 0.2754,
+    early: float = -0.0125,
+    stay: float = 0.0927,
+    open_time: float = 0.2423,
+    late: float = 0.1000,
+    back: float = -0.0249,
+    back_side: float = -0.4783,
+    out_time: float = 0.4500,
+    back_time: float = 0.1751,
+    back_pike: float = 1.1721,
 ) -> Maneuver:
     """A somersault forwards with one and a half twists to the right, out of a pike, by the hula.
 
     The athlete takes off piked, with the arms straight out. The legs swing from before the body to
     its side and then under it, which tilts him, while the arms are wrapped; the arms open, and the
     legs make a part of that movement backwards, which takes the tilt out again. By default it is
-    the one of section 6.3.1 that stays within an athlete's torques.
+    within seven eighths of an athlete's torques (hips 250 N m, shoulders and torso 150, elbows 70).
 
     Parameters
     ----------
@@ -105,11 +104,16 @@ def rudi(
     """
     body = load(model)
     for name, time in {
-        "swing_time": swing_time, "extend_time": extend_time, "wrap_time": wrap_time,
-        "open_time": open_time, "out_time": out_time, "back_time": back_time, "stay": stay,
+        "swing_time": swing_time, "extend_time": extend_time, "wrap_time": wrap_time, "stay": stay,
+        "open_time": open_time, "out_time": out_time, "back_time": back_time,
     }.items():  # fmt: skip
-        if number(name, time) <= 0:
-            raise SomersaultError(f"{name} must be positive, and is {time:g}")
+        seconds(**{name: time})
+    for name, by in {
+        "pike": pike, "side": side, "swing": swing, "extend": extend, "centre": centre,
+        "torso": torso, "wrap": wrap, "early": early, "late": late, "back": back,
+        "back_side": back_side, "back_pike": back_pike,
+    }.items():  # fmt: skip
+        number(name, by)
     swung = swing + swing_time
     extending = max(swing + extend, _FIRST)
     straight = max(extending + extend_time, swung + 2 * _APART)

@@ -19,5 +19,6 @@ CHAPTER = Chapter(
         _entry("sec7-5-layout", "§7.5: the layout, chosen", "_layout_design.layout_design", True),
         _entry("sec7-5-doll", "§7.5: the doll, chosen", "_layout_design.doll_design", True),
         _entry("sec7-5-rudi", "§7.5: the rudi, chosen", "_rudi_design.rudi_design", True),
+        _entry("sec7-5-together", "§7.5: motion and compliance", "_rudi_together.together", True),
     ),
 )
