@@ -106,14 +106,13 @@ def test_flights_of_the_design_are_those_made_by_hand() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kept", ["rudi", "rudi_gentle"])
-def test_one_compliance_serves_all_momenta(kept: rudi.Kept) -> None:
-    for factor in momenta.FACTORS:
-        assert momenta.judged(kept, "fixed", factor).share[1] >= 95.0
-        own = momenta.own_landing(
-            kept, momenta.soft(kept, momenta.found(kept, "fixed"), factor)
-        ).landing
-        assert own.ended == "duration"
-    nominal = rudi.nominal(kept).landing
-    own = momenta.own_landing(kept, momenta.soft(kept, momenta.found(kept, "fixed"), 1.0)).landing
-    assert own.twist == pytest.approx(nominal.twist, abs=1e-4)
+def test_unperturbed_a_compliant_body_lands_as_prescribed_at_h_and_elsewhere_at_others() -> None:
+    nominal, gains = rudi.nominal().landing, momenta.found("rudi", "fixed")
+    own = {
+        factor: momenta.own_landing("rudi", momenta.soft("rudi", gains, factor)).landing
+        for factor in momenta.FACTORS
+    }
+    assert own[1.0].twist == pytest.approx(nominal.twist, abs=1e-4)
+    assert own[0.9].somersault < own[1.0].somersault - 0.3
+    assert own[1.1].somersault > own[1.0].somersault + 0.3
+    assert momenta.judged("rudi", "fixed", 0.9).share[1] >= 95.0
