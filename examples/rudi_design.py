@@ -5,7 +5,7 @@ twists (so.rudi) of an athlete is to land from starts that are off by up to 0.1 
 twist, with no torque at any joint beyond what he has, also while his joints give way. Chosen are
 twenty numbers of the motion and the natural frequencies of seven groups of joints, and with
 "damped", about the motion that was found, once more these with damping ratios, which are 0.7
-otherwise. Every candidate has the motor tape of its own motion. Takes some five minutes on two
+otherwise. Every candidate has the motor tape of its own motion. Takes some three minutes on two
 cores; what is found is kept in the folder rudi_design (rudi_design_damped), and the same call goes
 on where it was stopped. Writes there design.png, rudi.json with what was chosen, and rudi.toml,
 which `somersault fly` takes.
