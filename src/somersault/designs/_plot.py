@@ -43,6 +43,9 @@ def plot(
             ax.set(xlabel=_with_unit(name, chosen[name].unit))
             if chosen[name].scale == "log":
                 ax.set_xscale("log")
+                shown = row["value"].values[[0, len(row["value"]) // 2, -1]]
+                ax.set_xticks(shown, [f"{x:.3g}" for x in shown])
+                ax.minorticks_off()
         for ax in axes[: 1 + len(names)]:
             ax.axhspan(*interval, color=look.ORANGE, alpha=0.25, lw=0)
             ax.axhline(figure, color=look.ORANGE, lw=1)
