@@ -902,6 +902,10 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
             "steps": 1000,
         },
     ),
+    "flight.flights_of": lambda: (
+        flight.flights,
+        {"model": maneuver(), "report": ("tilt",)},
+    ),
     "flight.fly": lambda: (
         so.fly,
         {

@@ -248,13 +248,10 @@ def _simulations(given: Any, objective: Objective) -> tuple[Simulation, ...]:
 
 def _simulation(what: Any, objective: Objective) -> Simulation:
     if isinstance(what, Maneuver):
-        own = {name: getattr(what, name, None) for name in ("accuracy", "until", "steps")}
-        options: dict[str, Any] = {name: x for name, x in own.items() if x is not None}
-        plain = flights(what.model, what.takeoff, what.duration, **options)
+        plain = flights(what)
         if objective.quantity in plain.variables:
             return plain
-        report = [objective.quantity]
-        return flights(what.model, what.takeoff, what.duration, report=report, **options)
+        return flights(what, report=[objective.quantity])
     if not isinstance(what, Simulation):
         raise SomersaultError(
             f"{shown(what)} is nothing that can be run; give a Maneuver, or flight.flights(…)"

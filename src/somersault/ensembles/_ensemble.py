@@ -142,14 +142,10 @@ def _simulation(
         chosen["report"] = _with_error(report, "against" in chosen)
     elif "against" in chosen:
         chosen["report"] = _with_error(Report(), True)
-    if isinstance(of, Maneuver):
-        _refuse(given, "a maneuver has its own")
-        own = {name: getattr(of, name, None) for name in ("accuracy", "until", "steps")}
-        chosen = {name: x for name, x in own.items() if x is not None} | chosen
-        return flights(of.model, of.takeoff, of.duration, **chosen)
-    if isinstance(of, str | Model) or not isinstance(of, Simulation):
+    if isinstance(of, str | Model | Maneuver) or not isinstance(of, Simulation):
         return flights(of, **given, **chosen)
-    _refuse({**given, **chosen}, "a simulation has its own")
+    for name in (*given, *chosen):
+        raise SomersaultError(f"{name} is given, but a simulation has its own; leave it out")
     return of
 
 
@@ -160,11 +156,6 @@ def _with_error(report: Any, measured: bool) -> Any:
     if not measured or LANDING_ERROR in report.quantities:
         return report
     return replace(report, quantities=(*report.quantities, LANDING_ERROR))
-
-
-def _refuse(given: Mapping[str, Any], why: str) -> None:
-    for name in given:
-        raise SomersaultError(f"{name} is given, but {why}; leave it out")
 
 
 def _warn_of_failures(planned: Plan, found: Ensemble) -> None:

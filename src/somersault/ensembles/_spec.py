@@ -14,6 +14,7 @@ from somersault.ensembles._vary import Vary
 from somersault.flight import KEYS, Maneuver, Report, flights
 from somersault.robot import KEYS as RUN_KEYS
 from somersault.robot import parse_runs
+from somersault.simulation import Simulation
 from somersault.spec import Unfit, read_as, read_toml, require_table, structured, structured_within
 
 _ACCURACY = 1e-7
@@ -114,14 +115,10 @@ def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
         return _of_runs(given, beside)
     if "samples" in given:
         raise SomersaultError("samples is no key of an ensemble's SPEC; histories are in [report]")
-    known = [*(key for key in KEYS if key != "samples"), *_TABLES]
-    for key in given:
-        if key not in known:
-            raise SomersaultError(
-                f"{key} is no key of an ensemble's SPEC; here it takes {', '.join(known)}"
-            )
+    flown_keys = [key for key in KEYS if key != "samples"]
+    _require_keys(given, [*flown_keys, *_TABLES], "an ensemble's SPEC")
     flown = Maneuver.parse({k: v for k, v in given.items() if k not in _TABLES}, beside)
-    keys = structured({k: v for k, v in given.items() if k in _TABLES}, Tables)
+    keys = _tables(given)
     target = dict(keys.target)
     tolerance = target.pop("tolerance", None)
     if tolerance is not None and not (tolerance > 0 and target):
@@ -133,30 +130,32 @@ def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
     reported = Report(quantities, keys.report.extremes, keys.report.history, keys.report.samples)
     if tolerance is not None and "landing_error" not in quantities:
         raise SomersaultError("target.tolerance needs landing_error among report.quantities")
-    many = flights(
-        flown.model, flown.takeoff, flown.duration, report=reported, against=target,
-        accuracy=flown.accuracy if "accuracy" in given else _ACCURACY,
-        until=flown.until, steps=flown.steps,
-    )  # fmt: skip
-    sample = keys.sample
-    planned = plan(many, dict(keys.vary or {}), sample.size, sample.seed, sample.sequence)
-    return EnsembleSpec(planned, tolerance, reported.quantities)
+    accuracy = None if "accuracy" in given else _ACCURACY
+    many = flights(flown, report=reported, against=target, accuracy=accuracy)
+    return EnsembleSpec(_planned(many, keys), tolerance, reported.quantities)
 
 
 def _of_runs(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
     """Runs of a robot, which report what they report."""
     tables = ("vary", "sample")
-    known = [*RUN_KEYS, *tables]
+    _require_keys(given, [*RUN_KEYS, *tables], "an ensemble of runs")
+    runs = parse_runs({k: v for k, v in given.items() if k not in tables}, beside)
+    return EnsembleSpec(_planned(runs, _tables(given)), None, tuple(runs.variables))
+
+
+def _tables(given: Mapping[str, Any]) -> Tables:
+    return structured({k: v for k, v in given.items() if k in _TABLES}, Tables)
+
+
+def _planned(simulation: Simulation, keys: Tables) -> Plan:
+    sample = keys.sample
+    return plan(simulation, dict(keys.vary or {}), sample.size, sample.seed, sample.sequence)
+
+
+def _require_keys(given: Mapping[str, Any], known: Sequence[str], of: str) -> None:
     for key in given:
         if key not in known:
-            raise SomersaultError(
-                f"{key} is no key of an ensemble of runs; here it takes {', '.join(known)}"
-            )
-    runs = parse_runs({k: v for k, v in given.items() if k not in tables}, beside)
-    keys = structured({k: v for k, v in given.items() if k in tables}, Tables)
-    sample = keys.sample
-    planned = plan(runs, dict(keys.vary or {}), sample.size, sample.seed, sample.sequence)
-    return EnsembleSpec(planned, None, tuple(runs.variables))
+            raise SomersaultError(f"{key} is no key of {of}; here it takes {', '.join(known)}")
 
 
 # ------------------------------------------------------------------------ kinds of value

@@ -12,10 +12,11 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.canonical import canonical
 from somersault._core.checks import name_list
+from somersault._core.errors import SomersaultError
 from somersault.flight._batch import Batch
 from somersault.flight._flight import Flight
 from somersault.flight._flown import flown
-from somersault.flight._maneuver import STEPS, check_limits_of_flight, flight_time
+from somersault.flight._maneuver import STEPS, Maneuver, check_limits_of_flight, flight_time
 from somersault.flight._report import ENDINGS, Report, check, target_of, variables
 from somersault.flight._reported import reported, watch_from_takeoff
 from somersault.flight._takeoff import Takeoff, require_takeoff
@@ -224,35 +225,37 @@ class Flights:
 
 
 def flights(
-    model: str | Model,
+    model: str | Model | Maneuver,
     takeoff: Takeoff | None = None,
-    duration: float = 1.0,
+    duration: float | None = None,
     *,
     report: Report | Sequence[str] = Report.quantities,
     against: Flight | Mapping[str, float] | None = None,
     until: str | None = None,
-    accuracy: float = ACCURACY,
-    steps: int = STEPS,
+    accuracy: float | None = None,
+    steps: int | None = None,
 ) -> Flights:
     """Flights of one maneuver that an ensemble may vary.
 
     Parameters
     ----------
-    model : str or Model
+    model : str, Model or Maneuver
+        A maneuver has its own takeoff and duration.
     takeoff : Takeoff, optional
-    duration : float
-        s.
+    duration : float, optional
+        s; 1 by default.
     report : Report or sequence of str
         A `Report`, or the names of its quantities.
     against : Flight or mapping of str to float, optional
         What "landing_error" is measured against: the landing of a flight, or angles by name (rad;
         somersault, tilt, twist and joint coordinates).
     until : {"quarter twist"}, optional
-        The event that ends a flight.
-    accuracy : float
-        Of the attitude, rad.
-    steps : int
-        A flight that is not done after so many steps of the integration has failed.
+        The event that ends a flight; by default the maneuver's, or none.
+    accuracy : float, optional
+        Of the attitude, rad; by default the maneuver's, or 1e-7.
+    steps : int, optional
+        A flight that is not done after so many steps of the integration has failed; by default the
+        maneuver's, or 100,000.
 
     Returns
     -------
@@ -269,7 +272,18 @@ def flights(
     >>> so.flight.flights("furrer", so.Takeoff(spin=8.64), 2.0, report=["twist"]).name
     'furrer'
     """
-    duration = flight_time(duration)
+    if isinstance(model, Maneuver):
+        for name, given in (("takeoff", takeoff), ("duration", duration)):
+            if given is not None:
+                raise SomersaultError(f"{name} is given, but a maneuver has its own; leave it out")
+        own, takeoff, duration = model, model.takeoff, model.duration
+        until = own.until if until is None else until
+        accuracy = own.accuracy if accuracy is None else accuracy
+        steps = own.steps if steps is None else steps
+        model = own.model
+    accuracy = ACCURACY if accuracy is None else accuracy
+    steps = STEPS if steps is None else steps
+    duration = flight_time(1.0 if duration is None else duration)
     check_limits_of_flight(accuracy, until, steps)
     takeoff = Takeoff() if takeoff is None else takeoff
     require_takeoff(takeoff)
