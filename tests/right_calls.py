@@ -304,6 +304,12 @@ def _short() -> so.Maneuver:
     return so.Maneuver("furrer", so.Takeoff(spin=8.64, joints=arms), 0.02)
 
 
+_TWO = {
+    "K": so.Choose(sets="joints.shoulder.K", between=(0.5, 1.5)),
+    "arms": so.Choose(sets="joints.shoulder.angle", between=(1.2, 1.4)),
+}
+
+
 def _designed(**given: Any) -> Any:
     right = {
         "choose": {"K": so.Choose(sets="joints.shoulder.K", between=(0.5, 1.5))},
@@ -379,6 +385,17 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     "stability.Burst.turns": lambda: (bursting().turns, {"amplitude": 0.01}),
     "stability.Burst.width": lambda: (bursting().width, {"amplitude": 0.01}),
     "stability.Burst.amplitude": lambda: (bursting().amplitude, {"tilt": 0.01, "twist": 0.0}),
+    "stability.spins": lambda: (
+        st.spins,
+        {
+            "model": "furrer",
+            "pose": POSE,
+            "stiffness": {"shoulder": 1.0},
+            "damping": {"shoulder": 0.1},
+            "axis": 2,
+            "lock": (),
+        },
+    ),
     "stability.chart": lambda: (st.chart, CHART),
     "stability.growth_rates": lambda: (
         st.growth_rates,
@@ -1067,6 +1084,18 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     ),
     "designs.Design.around": lambda: (_designed().around, {"steps": 2, "reach": 0.1}),
     "designs.Design.plot": lambda: (_designed().plot, {"steps": 2, "reach": 0.1}),
+    "designs.Design.map": lambda: (
+        _designed(choose=_TWO).map,
+        {"x": "K", "y": "arms", "steps": 2, "reach": 0.1, "progress": False},
+    ),
+    "designs.Design.plot_map": lambda: (
+        _designed(choose=_TWO).plot_map,
+        {"x": "K", "y": "arms", "steps": 2, "reach": 0.1, "progress": False},
+    ),
+    "designs.Design.sensitivity": lambda: (
+        _designed().sensitivity,
+        {"size": 64, "reach": 0.5, "confidence": 0.9, "seed": 1, "progress": False},
+    ),
     "designs.Design.on": lambda: (_designed().on, {"size": 2, "seed": 3}),
     "designs.parse_design": lambda: (
         designs.parse_design,

@@ -186,6 +186,11 @@ def moves_of(simulation: Simulation, name: str, chosen: Choose) -> tuple[Move, .
         raise SomersaultError(f"choose.{name}: {mistake}") from None
 
 
+def table_of(chosen: Mapping[str, Choose], parts: Array) -> Array:
+    """The values (P, chosen) of candidates at parts of their ways between the bounds."""
+    return np.stack([one.value(parts[:, k]) for k, one in enumerate(chosen.values())], 1)
+
+
 def _names(what: str, given: Any) -> tuple[str, ...]:
     if isinstance(given, str):
         return (given,) if given else ()

@@ -27,7 +27,7 @@ from somersault._core.notes import note
 from somersault._core.numbers import number
 from somersault._core.stages import stage
 from somersault.designs._candidates import check_apart
-from somersault.designs._choose import Choose, moves_of
+from somersault.designs._choose import Choose, moves_of, table_of
 from somersault.designs._given import Given
 from somersault.designs._journal import Journal
 from somersault.designs._limit import Limit
@@ -157,7 +157,7 @@ def design(
         raise SomersaultError("nothing is chosen; say what the design may change")
     begins = np.array([one.begins for one in chosen.values()])
     trial = Trial(
-        _source(what, chosen, _table(chosen, begins[None])[0], objective, made),
+        _source(what, chosen, table_of(chosen, begins[None])[0], objective, made),
         dict(by_name("vary", vary)), objective,
         tuple(limit.checked() for limit in list_of("limits", limits, Limit)),
         whole_number("size", size, 1, _MOST_SIZE), whole_number("seed", seed, 0, 2**31), sequence,
@@ -172,7 +172,7 @@ def design(
     truth("progress", progress)
     folder = None if out is None else file_path("out", out)
     where = {"threads": threads, "workers": workers, "scheduler": scheduler, "security": security}
-    first = trial.planned(_table(chosen, begins[None]))  # refuses what cannot be run
+    first = trial.planned(trial.table(begins[None]))  # refuses what cannot be run
     journal = Journal(folder, {
         **trial.source.specification, "cases": [one.specification for one in first],
         "versions": first[0].versions, "objective": canonical(objective),
@@ -181,7 +181,7 @@ def design(
     })  # fmt: skip
 
     def outcome(parts: Array) -> Outcome:
-        return trial.outcome(_table(chosen, parts), **where)
+        return trial.outcome(trial.table(parts), **where)
 
     with _bar(evaluations, objective, progress) as told:
         search(begins, width, evaluations, population, seed, journal, outcome, told)
@@ -205,7 +205,7 @@ def _judged(
             f"by {100 * least:.3g} %; widen the bounds, or the limits"
         )
     best = candidates[np.flatnonzero(within)[np.argmin(costs[within])]]
-    table = _table(trial.chosen, np.stack([begins, best]))
+    table = trial.table(np.stack([begins, best]))
     fresh = replace(trial, size=held_out, seed=trial.seed + 1)
     rows = fresh.run(table, **where)
     lost = int(fresh.failed(rows[ENDED])[1].sum())
@@ -213,12 +213,6 @@ def _judged(
         called = trial.simulation.endings.called
         note(f"{lost:,} of {held_out:,} held-out {called} of the best failed, and count as such")
     return Design(trial, fresh, table, best, journal.generations, rows)
-
-
-def _table(chosen: Mapping[str, Choose], parts: Array) -> Array:
-    """The values (P, n) of candidates at parts of their ways."""
-    columns = [one.value(parts[:, k]) for k, one in enumerate(chosen.values())]
-    return np.stack(columns, 1)
 
 
 def _source(

@@ -55,5 +55,28 @@ def plot(
         return picture
 
 
+def plot_map(data: xr.Dataset, chosen: Mapping[str, Choose], best: Mapping[str, float]) -> Figure:
+    """The figure over two chosen quantities, with the best marked."""
+    up, across = (str(name) for name in data["figure"].dims)
+    with look.style():
+        picture = look.figure(5.4, 4.2)
+        ax = picture.subplots()
+        shown = ax.contourf(data[across], data[up], data["figure"], 12, cmap=look.darkening())
+        ax.plot(best[across], best[up], "o", color=look.ORANGE, ms=7, mec="white")
+        ax.set(
+            xlabel=_with_unit(across, chosen[across].unit), ylabel=_with_unit(up, chosen[up].unit)
+        )
+        for name, axis, scaled in (
+            (across, ax.xaxis, ax.set_xscale), (up, ax.yaxis, ax.set_yscale),
+        ):  # fmt: skip
+            if chosen[name].scale == "log":
+                scaled("log")
+                axis.set_major_formatter("{x:g}")
+                axis.set_minor_formatter("{x:g}")
+        words = _with_unit(data.attrs["objective"], data["figure"].attrs["units"])
+        picture.colorbar(shown, ax=ax).set_label(words)
+        return picture
+
+
 def _with_unit(name: str, unit: str) -> str:
-    return f"{name} ({unit})" if unit else name
+    return f"{name} ({unit})" if unit not in ("", "1") else name

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import whole_number
+from somersault._core.checks import one_of, whole_number
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 from somersault.designs._candidates import CANDIDATE, Candidates
+from somersault.designs._surface import FIGURE, Surface
 from somersault.designs._trial import Outcome, Trial
+from somersault.ensembles import Vary, sensitivity
 from somersault.simulation import ENDED
 
 if TYPE_CHECKING:
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MOST_STEPS = 1_001
+_FEWEST, _MOST_GROUPS = 64, 1_000_000
 CANDIDATES = ("first", "best")
 
 
@@ -180,16 +183,13 @@ class Design:
         """
         import xarray as xr
 
-        whole_number("steps", steps, 2, _MOST_STEPS)
-        if not 0 < number("reach", reach) <= 1:
-            raise SomersaultError(f"reach must be above 0 and at most 1, and is {reach:g}")
+        steps, reach = _window(steps, reach)
         chosen = list(self.trial.chosen.values())
         by = np.linspace(-reach, reach, steps)
         parts = np.tile(self.parts, (len(chosen), steps, 1))
         for k in range(len(chosen)):
             parts[k, :, k] = np.clip(self.parts[k] + by, 0.0, 1.0)
-        flat = parts.reshape(-1, len(chosen))
-        table = np.stack([one.value(flat[:, k]) for k, one in enumerate(chosen)], 1)
+        table = self.held_out.table(parts.reshape(-1, len(chosen)))
         figures = self.held_out.figures(self.held_out.run(table))
         values = np.stack([one.value(parts[k, :, k]) for k, one in enumerate(chosen)])
         along = ("quantity", "step")
@@ -198,6 +198,93 @@ class Design:
             {"quantity": list(self.trial.chosen), "step": by},
             {"objective": self.trial.objective.words},
         )
+
+    def map(
+        self, x: str, y: str, steps: int = 21, reach: float = 0.2, progress: bool = False
+    ) -> xr.Dataset:
+        """The figure over two of the chosen quantities about the best, the others staying.
+
+        Parameters
+        ----------
+        x, y : str
+            Names of what is chosen.
+        steps : int
+            How many values of each.
+        reach : float
+            How far to each side, as a part of its range; no further than the bounds.
+        progress : bool
+            Whether a bar shows how far it is.
+
+        Returns
+        -------
+        xarray.Dataset
+            `figure` over the two, dims (y, x), from held-out starts.
+
+        Raises
+        ------
+        SomersaultError
+            For what is not chosen, and for a quantity against itself.
+        """
+        import xarray as xr
+
+        steps, reach = _window(steps, reach)
+        for name in (x, y):
+            one_of("what a map is over", name, self.trial.chosen)
+        if x == y:
+            raise SomersaultError(f"a map of {x} against itself shows nothing; name two quantities")
+        ways = {name: np.linspace(*self._near(name, reach), steps) for name in (x, y)}
+        chosen = self.trial.chosen
+        vary = {name: Vary(sets=name, values=way) for name, way in ways.items()}
+        fixed = {n: Vary(sets=n, values=[part]) for n, part in self._parts.items() if n not in ways}
+        data = Surface(self.held_out).over(vary | fixed, None, "sobol", 0, progress)
+        figures = data[FIGURE].squeeze([str(n) for n in fixed], drop=True)
+        return xr.Dataset(
+            {FIGURE: ((y, x), figures.transpose(y, x).values, {"units": self.trial.unit})},
+            {n: (n, chosen[n].value(way), {"units": chosen[n].unit}) for n, way in ways.items()},
+            {"objective": self.trial.objective.words},
+        )
+
+    def sensitivity(
+        self, size: int = 256, reach: float = 1.0, *, confidence: float = 0.95, seed: int = 0,
+        progress: bool = False,
+    ) -> xr.Dataset:  # fmt: skip
+        """Which of the chosen quantities matter: Sobol' indices of the figure over the bounds.
+
+        Parameters
+        ----------
+        size : int
+            How many groups of candidates are drawn, of two more than quantities are chosen (64 at
+            least), each judged on the starts of the search.
+        reach : float
+            How far to each side of the best, as a part of the range; with 1 all between the bounds.
+        confidence : float
+            Of the half-widths, between 0 and 1.
+        seed : int
+            From which candidates are drawn.
+        progress : bool
+            Whether a bar shows how far it is.
+
+        Returns
+        -------
+        xarray.Dataset
+            As `ensembles.sensitivity` gives it: over `input`, what matters most first,
+            `first_order` and `total`, and their half-widths.
+        """
+        whole_number("size", size, _FEWEST, _MOST_GROUPS)
+        _, reach = _window(2, reach)
+        vary = {n: Vary(sets=n, uniform=self._near(n, reach)) for n in self._parts}
+        drawn = size * (len(vary) + 2)
+        data = Surface(self.trial).over(vary, drawn, "saltelli", seed, progress)
+        return sensitivity(data, FIGURE, confidence, seed)
+
+    @property
+    def _parts(self) -> dict[str, float]:
+        """Where the best is between its bounds, by name."""
+        return dict(zip(self.trial.chosen, self.parts.tolist(), strict=True))
+
+    def _near(self, name: str, reach: float) -> tuple[float, float]:
+        """The window about the best, within the bounds."""
+        return max(self._parts[name] - reach, 0.0), min(self._parts[name] + reach, 1.0)
 
     def plot(self, steps: int = 9, reach: float = 0.2) -> Figure:
         """A picture: how the search went, and how sharp the optimum is along each quantity.
@@ -218,6 +305,25 @@ class Design:
             self.interval,
         )  # fmt: skip
 
+    def plot_map(
+        self, x: str, y: str, steps: int = 21, reach: float = 0.2, progress: bool = False
+    ) -> Figure:
+        """A picture of the figure over two of the chosen quantities, and where the best is.
+
+        Parameters
+        ----------
+        x, y, steps, reach, progress
+            As for `map`.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        from somersault.designs._plot import plot_map
+
+        data = self.map(x, y, steps, reach, progress)
+        return plot_map(data, self.trial.chosen, self.best)
+
     def on(self, **changes: Any) -> Design:
         """The same design judged on other starts.
 
@@ -236,3 +342,11 @@ class Design:
             changes["source"] = self.held_out.source.of(changes.pop("simulation"))
         other = replace(self.held_out, **changes)
         return replace(self, held_out=other, rows=other.run(self.table))
+
+
+def _window(steps: int, reach: float) -> tuple[int, float]:
+    """How many values and how far from the best; SomersaultError for what is none."""
+    whole_number("steps", steps, 2, _MOST_STEPS)
+    if not 0 < number("reach", reach) <= 1:
+        raise SomersaultError(f"reach must be above 0 and at most 1, and is {reach:g}")
+    return steps, reach

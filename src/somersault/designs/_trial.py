@@ -13,9 +13,9 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault.designs._candidates import CANDIDATE, Candidates
-from somersault.designs._choose import Choose
+from somersault.designs._choose import Choose, table_of
 from somersault.designs._limit import Limit
-from somersault.designs._objective import Objective
+from somersault.designs._objective import Averaged, Objective
 from somersault.designs._source import Group, Source
 from somersault.ensembles import Plan, Vary, carried_out, plan
 from somersault.simulation import ENDED, Simulation
@@ -70,6 +70,10 @@ class Trial:
     def chosen(self) -> Mapping[str, Choose]:
         """What is chosen."""
         return self.source.chosen
+
+    def table(self, parts: Array) -> Array:
+        """The values (P, chosen) of candidates at parts of their ways between the bounds."""
+        return table_of(self.chosen, parts)
 
     def planned(self, table: Array) -> list[Plan]:
         """The ensembles of candidates (P, chosen) that are run first."""
@@ -151,6 +155,12 @@ class Trial:
             beyond += sum(limit.beyond(judged[name], failed) for name in names)
         costs = self.objective.costs(rows[self.objective.quantity], self.failed(rows[ENDED]))
         return Outcome(self.figures(rows), costs, beyond)
+
+    @property
+    def unit(self) -> str:
+        """Of the objective's figure: that of its quantity, or "1" for a share."""
+        variable = self.simulation.variables[self.objective.quantity]
+        return variable.unit if isinstance(self.objective, Averaged) else "1"
 
     def check(self) -> None:
         """SomersaultError for a quantity that is not reported, and where nothing is scattered."""

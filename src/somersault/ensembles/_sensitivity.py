@@ -186,7 +186,7 @@ def _indices(
         if design:
             result = sobol.analyze(
                 problem, y, calc_second_order=False, num_resamples=resamples,
-                conf_level=confidence, seed=seed,
+                conf_level=confidence, seed=seed + 1,  # it takes 0 for none
             )  # fmt: skip
             keys = ["S1", "S1_conf", "ST", "ST_conf"]
         else:

@@ -15,6 +15,7 @@ from somersault.stability._principal import PrincipalAxes, principal_axes
 from somersault.stability._ranges import stable_ranges, stable_ranges_by_case
 from somersault.stability._resonances import Resonance
 from somersault.stability._spin import principal_inertias, spin
+from somersault.stability._spins import spins
 from somersault.stability._steady import holding_torques
 from somersault.stability._types import LinearSpin, Spin
 
@@ -37,6 +38,7 @@ __all__ = [
     "principal_inertias",
     "root_locus",
     "spin",
+    "spins",
     "stable_ranges",
     "stable_ranges_by_case",
 ]
