@@ -319,6 +319,12 @@ def _designed(**given: Any) -> Any:
     return so.design(_short(), **{**right, **more, **given})
 
 
+def _traded(**given: Any) -> Any:
+    both = [GOAL, designs.Mean("K")]
+    more = {"size": 2, "evaluations": 4, "population": 4, "held_out": 2}
+    return designs.trade_off(_short(), _TWO, {"leant": NORMAL}, both, **{**more, **given})
+
+
 def _vary(**given: Any) -> Any:
     vary = {"x": so.Vary(**{"sets": "takeoff.tilt", **given})}
     size = None if {"values", "samples"} & set(given) else 2
@@ -1084,6 +1090,27 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     ),
     "designs.Design.around": lambda: (_designed().around, {"steps": 2, "reach": 0.1}),
     "designs.Design.plot": lambda: (_designed().plot, {"steps": 2, "reach": 0.1}),
+    "designs.trade_off": lambda: (
+        designs.trade_off,
+        {
+            "what": _short(),
+            "choose": _TWO,
+            "vary": {"leant": NORMAL},
+            "objectives": [GOAL, designs.Mean("K")],
+            "limits": [designs.Limit("twist", most=3.0)],
+            "size": 2,
+            "seed": 1,
+            "sequence": "sobol",
+            "evaluations": 4,
+            "population": 4,
+            "points": 2,
+            "held_out": 2,
+            "progress": False,
+        },
+    ),
+    "designs.trade_off_out": lambda: (_traded, {"out": "front", "threads": 1}),
+    "designs.TradeOff.design": lambda: (_traded().design, {"point": 0, "objective": 1}),
+    "designs.TradeOff.plot": lambda: (_traded().plot, {}),
     "designs.Design.map": lambda: (
         _designed(choose=_TWO).map,
         {"x": "K", "y": "arms", "steps": 2, "reach": 0.1, "progress": False},

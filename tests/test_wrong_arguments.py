@@ -139,6 +139,7 @@ NOT_FOR_USERS = {
             "EnsembleSpec",
             "Design",
             "DesignSpec*",
+            "TradeOff",
             "Plan",
             "Plan.drawn",
             "PlanSpec*",

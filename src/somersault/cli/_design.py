@@ -19,7 +19,7 @@ from somersault.cli._outputs import (
 )
 
 if TYPE_CHECKING:
-    from somersault.designs import Design
+    from somersault.designs import Design, TradeOff
 
 EXAMPLES = """examples:
   somersault design examples/layout_design.toml
@@ -42,7 +42,8 @@ A SPEC is that of `somersault ensemble`, and what is chosen, to what end:
   most = 1.0
   [search]
   evaluations = 400
-  held_out = 1024"""
+  held_out = 1024
+Instead of [objective], tables [objectives.NAME] are traded off: the Pareto front is found."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -55,7 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_cluster(parser)
     parser.add_argument(
         "--plot", type=Path, metavar="FILE",
-        help=f"draw the search and how sharp the optimum is: {PICTURE_ENDINGS}",
+        help=f"draw the search and how sharp the optimum is, or a trade-off: {PICTURE_ENDINGS}",
     )  # fmt: skip
     parser.add_argument("--json", action="store_true", help="print JSON for programs")
 
@@ -65,7 +66,7 @@ def run(chosen: argparse.Namespace) -> None:
     import json
 
     from somersault._core.places import check_file
-    from somersault.designs import read_design
+    from somersault.designs import TradeOff, read_design
 
     if chosen.plot is not None:
         check_file(chosen.plot, PICTURES)
@@ -75,14 +76,16 @@ def run(chosen: argparse.Namespace) -> None:
         out=chosen.out, threads=chosen.threads, workers=chosen.workers,
         scheduler=chosen.scheduler, security=security(chosen), progress=sys.stderr.isatty(),
     )  # fmt: skip
-    writing, record = Writing(), _record(found)
+    writing, traded = Writing(), isinstance(found, TradeOff)
+    record = _front(found) if isinstance(found, TradeOff) else _record(found)
     if chosen.out is not None:
         record["folder"] = str(chosen.out)
     if chosen.plot is not None:
         with writing:
             save_picture(chosen.plot, found.plot())
             record["picture"] = str(chosen.plot)
-    print(json.dumps(record) if chosen.json else "\n".join(_page(record)))
+    page = _front_page if traded else _page
+    print(json.dumps(record) if chosen.json else "\n".join(page(record)))
     writing.finish()
 
 
@@ -103,6 +106,58 @@ def _record(found: Design) -> dict[str, Any]:
     }
 
 
+def _front(found: TradeOff) -> dict[str, Any]:
+    data = found.dataset
+    names = [str(name) for name in data["quantity"].values]
+    points = [
+        {
+            "chosen": dict(zip(names, one["chosen"].values.tolist(), strict=True)),
+            **{key: one[key].values.tolist() for key in ("figure", "low", "high")},
+            "beaten": bool(one["beaten"]),
+        }
+        for one in (data.isel(point=k) for k in range(data.sizes["point"]))
+    ]
+    return {
+        "model": found.trial.simulation.name,
+        "objectives": [str(name) for name in data["objective"].values],
+        "points": points,
+        "first": found.first["figure"].values.tolist(),
+        "starts": next(iter(found.rows.values())).shape[1],
+        "candidates": sum(len(parts) for parts, _ in found.generations),
+        "units": {name: one.unit for name, one in found.trial.chosen.items()},
+    }
+
+
+def _front_page(record: dict[str, Any]) -> list[str]:
+    points, aims = record["points"], record["objectives"]
+    names = [f"{name} ({unit})" if unit else name for name, unit in record["units"].items()]
+    rows = [[*aims, *names]]
+    for point in points:
+        spans = zip(point["figure"], point["low"], point["high"], strict=True)
+        figures = [_with_interval(*span) for span in spans]
+        rows.append([*figures, *(f"{x:.5g}" for x in point["chosen"].values())])
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = [
+        f"{record['model']}: {len(points)} points of the front of {record['candidates']:,} "
+        f"candidates, on {record['starts']:,} other starts (with 95 % confidence)"
+    ]
+    marks = ["", *("beaten" if point["beaten"] else "" for point in points)]
+    for row, mark in zip(rows, marks, strict=True):
+        cells = [cell.ljust(width) for cell, width in zip(row, widths, strict=True)]
+        lines.append("  " + "  ".join([*cells, mark]).rstrip())
+    return lines + _places(record)
+
+
+def _with_interval(figure: float, *interval: float) -> str:
+    low, high = (f"{x:.4g}" for x in interval)
+    return f"{figure:.4g}" if low == high else f"{figure:.4g} ({low} to {high})"
+
+
+def _places(record: dict[str, Any]) -> list[str]:
+    places = ("folder", "picture")
+    return written_lines({name: record[name] for name in places if name in record})
+
+
 def _page(record: dict[str, Any]) -> list[str]:
     worst = ", ".join(f"{name} {x:.4g}" for name, x in record["worst_start"].items())
     lines = [f"{record['model']}: best of {record['candidates']:,} candidates"]
@@ -116,5 +171,4 @@ def _page(record: dict[str, Any]) -> list[str]:
         f"{record['first']:.4g}",
         f"  worst start: {worst}",
     ]
-    places = ("folder", "picture")
-    return lines + written_lines({name: record[name] for name in places if name in record})
+    return lines + _places(record)

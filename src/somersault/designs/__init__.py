@@ -5,10 +5,12 @@ from somersault.designs._design import design
 from somersault.designs._limit import Limit
 from somersault.designs._mean import Mean
 from somersault.designs._objective import Objective
+from somersault.designs._pareto import TradeOff
 from somersault.designs._quantile import Quantile
 from somersault.designs._result import Design
 from somersault.designs._share import Share
 from somersault.designs._spec import DesignSpec, parse_design, read_design
+from somersault.designs._trade_off import trade_off
 
 __all__ = [
     "Choose",
@@ -19,7 +21,9 @@ __all__ = [
     "Objective",
     "Quantile",
     "Share",
+    "TradeOff",
     "design",
     "parse_design",
     "read_design",
+    "trade_off",
 ]

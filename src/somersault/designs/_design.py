@@ -3,54 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.canonical import canonical
-from somersault._core.checks import (
-    by_name,
-    file_path,
-    instance,
-    list_of,
-    shown,
-    truth,
-    whole_number,
-)
+from somersault._core.checks import truth
 from somersault._core.errors import SomersaultError
-from somersault._core.notes import note
 from somersault._core.numbers import number
-from somersault._core.stages import stage
-from somersault.designs._candidates import check_apart
-from somersault.designs._choose import Choose, moves_of, table_of
-from somersault.designs._given import Given
-from somersault.designs._journal import Journal
+from somersault.designs._choose import Choose
 from somersault.designs._limit import Limit
-from somersault.designs._made import Made, arguments, check_arguments
 from somersault.designs._objective import Objective
 from somersault.designs._result import Design
 from somersault.designs._search import search
-from somersault.designs._source import Source
-from somersault.designs._trial import Outcome, Trial
+from somersault.designs._study import EVALUATIONS, HELD_OUT, SIZE, WIDTH, Size, study
+from somersault.designs._trial import Outcome
 from somersault.ensembles import Vary
-from somersault.flight import Maneuver, flights
-from somersault.simulation import ENDED, Simulation
+from somersault.flight import Maneuver
+from somersault.simulation import Simulation
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from distributed.security import Security
-
-EVALUATIONS = 400
-_MOST_EVALUATIONS = 1_000_000
-_SIZE, HELD_OUT = 64, 1_024
-WIDTH = 0.25
-_MOST_SIZE = 10_000_000
 
 
 def design(
@@ -60,7 +34,7 @@ def design(
     objective: Objective,
     *,
     limits: Sequence[Limit] = (),
-    size: int = _SIZE,
+    size: int = SIZE,
     seed: int = 0,
     sequence: str = "sobol",
     evaluations: int = EVALUATIONS,
@@ -143,141 +117,31 @@ def design(
     >>> 0.4 < found.best["stiffness"] < 2.0
     True
     """
-    if not isinstance(objective, Objective):
-        raise SomersaultError(
-            f"objective is {shown(objective)}; give designs.Share, designs.Mean or designs.Quantile"
-        )
-    objective = objective.checked()
-    made = callable(what) and not isinstance(what, Simulation)
-    chosen = {
-        name: instance(f"choose.{name}", one, Choose).checked(name, given=made)
-        for name, one in by_name("choose", choose).items()
-    }
-    if not chosen:
-        raise SomersaultError("nothing is chosen; say what the design may change")
-    begins = np.array([one.begins for one in chosen.values()])
-    trial = Trial(
-        _source(what, chosen, table_of(chosen, begins[None])[0], objective, made),
-        dict(by_name("vary", vary)), objective,
-        tuple(limit.checked() for limit in list_of("limits", limits, Limit)),
-        whole_number("size", size, 1, _MOST_SIZE), whole_number("seed", seed, 0, 2**31), sequence,
-    )  # fmt: skip
-    trial.check()
-    whole_number("evaluations", evaluations, 2, _MOST_EVALUATIONS)
-    whole_number("held_out", held_out, 2, _MOST_SIZE)
-    if population is not None:
-        whole_number("population", population, 2, evaluations)
+    truth("progress", progress)
     if not 0 < number("width", width) <= 1:
         raise SomersaultError(f"width must be above 0 and at most 1, and is {width:g}")
-    truth("progress", progress)
-    folder = None if out is None else file_path("out", out)
-    where = {"threads": threads, "workers": workers, "scheduler": scheduler, "security": security}
-    first = trial.planned(trial.table(begins[None]))  # refuses what cannot be run
-    journal = Journal(folder, {
-        **trial.source.specification, "cases": [one.specification for one in first],
-        "versions": first[0].versions, "objective": canonical(objective),
-        "objective_kind": objective.kind, "limits": [canonical(limit) for limit in trial.limits],
-        "search": {"evaluations": evaluations, "population": population, "width": width},
-    })  # fmt: skip
+    much = Size(size, seed, sequence, evaluations, population, held_out)
+    sought = study(
+        what, choose, vary, (objective,), limits, much, out, {"width": width},
+        threads=threads, workers=workers, scheduler=scheduler, security=security,
+    )  # fmt: skip
+    rises, best = objective.rises, list[float]()
 
     def outcome(parts: Array) -> Outcome:
-        return trial.outcome(trial.table(parts), **where)
+        return sought.trial.outcome(sought.trial.table(parts), **sought.where)
 
-    with _bar(evaluations, objective, progress) as told:
-        search(begins, width, evaluations, population, seed, journal, outcome, told)
-    return _judged(trial, journal, begins, held_out, where)
+    with sought.bar(progress) as told:
 
+        def heard(judged: int, outcome: Outcome) -> None:
+            good = outcome.figures[outcome.beyond <= 0]
+            if good.size:
+                pick = max if rises else min
+                best[:] = [pick([*best, float(pick(good))])]
+            told(judged, f"best {best[0]:.4g}" if best else "none within the limits yet")
 
-def _judged(
-    trial: Trial, journal: Journal, begins: Array, held_out: int, where: Mapping[str, Any]
-) -> Design:
-    """The best candidate of a search and the one it began with, on starts of their own."""
-    candidates = np.concatenate([parts for parts, _ in journal.generations])
-    costs, beyond = (
-        np.concatenate([getattr(o, what) for _, o in journal.generations])
-        for what in ("costs", "beyond")
-    )
-    within = beyond <= 0
-    if not within.any():
-        least = float(beyond.min())
-        raise SomersaultError(
-            f"none of {len(candidates)} candidates keeps to the limits; the nearest is beyond them "
-            f"by {100 * least:.3g} %; widen the bounds, or the limits"
-        )
-    best = candidates[np.flatnonzero(within)[np.argmin(costs[within])]]
-    table = trial.table(np.stack([begins, best]))
-    fresh = replace(trial, size=held_out, seed=trial.seed + 1)
-    rows = fresh.run(table, **where)
-    lost = int(fresh.failed(rows[ENDED])[1].sum())
-    if lost:
-        called = trial.simulation.endings.called
-        note(f"{lost:,} of {held_out:,} held-out {called} of the best failed, and count as such")
-    return Design(trial, fresh, table, best, journal.generations, rows)
-
-
-def _source(
-    what: Any, chosen: Mapping[str, Choose], begins: Array, objective: Objective, made: bool
-) -> Source:
-    """Where candidates come from, of what is run and where the search begins (chosen,)."""
-    if made:
-        check_arguments(what, chosen)
-    read = partial(_simulations, objective=objective)
-    cases = read(what(**arguments(chosen, begins)) if made else what)
-    if not cases:
-        raise SomersaultError("nothing is run; give a Maneuver, or flight.flights(…)")
-    if len({tuple(case.variables) for case in cases}) > 1:
-        raise SomersaultError("cases report different things; let all of them report the same")
-    moves = {name: moves_of(cases[0], name, one) for name, one in chosen.items()}
-    check_apart(moves)
-    if made:
-        return Made(cases, chosen, moves, read, what)
-    return Given(cases, chosen, moves, read)
-
-
-def _simulations(given: Any, objective: Objective) -> tuple[Simulation, ...]:
-    """One or several that are run."""
-    several = isinstance(given, Sequence) and not isinstance(given, str)
-    return tuple(_simulation(one, objective) for one in (given if several else (given,)))
-
-
-def _simulation(what: Any, objective: Objective) -> Simulation:
-    if isinstance(what, Maneuver):
-        plain = flights(what)
-        if objective.quantity in plain.variables:
-            return plain
-        return flights(what, report=[objective.quantity])
-    if not isinstance(what, Simulation):
-        raise SomersaultError(
-            f"{shown(what)} is nothing that can be run; give a Maneuver, or flight.flights(…)"
-        )
-    return what
-
-
-@contextmanager
-def _bar(
-    evaluations: int, objective: Objective, shown: bool
-) -> Iterator[Callable[[int, Outcome], None]]:
-    """A bar on standard error, with the best figure so far."""
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    best: list[float] = []
-
-    def told(judged: int, outcome: Outcome) -> None:
-        good = outcome.figures[outcome.beyond <= 0]
-        if good.size:
-            pick = max if objective.rises else min
-            best[:] = [pick([*best, float(pick(good))])]
-        said = f"best {best[0]:.4g}" if best else "none within the limits yet"
-        bar.update(task, completed=min(judged, evaluations), said=said)
-
-    columns = (
-        TextColumn("{task.completed:,.0f} of {task.total:,.0f} candidates"),
-        BarColumn(bar_width=10), TextColumn("{task.fields[said]}"), TimeElapsedColumn(),
-    )  # fmt: skip
-    with (
-        stage(""),
-        Progress(*columns, console=Console(stderr=True), transient=True, disable=not shown) as bar,
-    ):
-        task = bar.add_task("", total=evaluations, said="")
-        yield told
+        search(sought.begins, width, evaluations, population, seed, sought.journal, outcome, heard)
+    candidates, costs = sought.found()
+    parts = candidates[np.argmin(costs)]
+    table = sought.trial.table(np.stack([sought.begins, parts]))
+    fresh, rows = sought.judged(table)
+    return Design(sought.trial, fresh, table, parts, sought.journal.generations, rows)

@@ -228,6 +228,7 @@ class Design:
         import xarray as xr
 
         steps, reach = _window(steps, reach)
+        unit = self.trial.unit(self.trial.objective)
         for name in (x, y):
             one_of("what a map is over", name, self.trial.chosen)
         if x == y:
@@ -239,7 +240,7 @@ class Design:
         data = Surface(self.held_out).over(vary | fixed, None, "sobol", 0, progress)
         figures = data[FIGURE].squeeze([str(n) for n in fixed], drop=True)
         return xr.Dataset(
-            {FIGURE: ((y, x), figures.transpose(y, x).values, {"units": self.trial.unit})},
+            {FIGURE: ((y, x), figures.transpose(y, x).values, {"units": unit})},
             {n: (n, chosen[n].value(way), {"units": chosen[n].unit}) for n, way in ways.items()},
             {"objective": self.trial.objective.words},
         )

@@ -10,10 +10,13 @@ from typing import Any, get_type_hints
 from somersault._core.checks import file_path, one_of
 from somersault._core.errors import SomersaultError
 from somersault.designs._choose import Choose
-from somersault.designs._design import EVALUATIONS, HELD_OUT, WIDTH, design
+from somersault.designs._design import design
 from somersault.designs._limit import Limit
 from somersault.designs._objective import Objective
+from somersault.designs._pareto import TradeOff
 from somersault.designs._result import Design
+from somersault.designs._study import EVALUATIONS, HELD_OUT
+from somersault.designs._trade_off import trade_off
 from somersault.ensembles import Plan, parse_ensemble
 from somersault.spec import Unfit, read_as, read_toml, require_table, structured
 
@@ -22,11 +25,15 @@ _HINTS = get_type_hints(Choose)
 
 @dataclass(frozen=True)
 class Search:
-    """[search]: how long is searched, and on how many other starts the best is judged."""
+    """[search]: how long is searched, and on how many other starts the best is judged.
+
+    `width` is for one objective, `points` for a trade-off.
+    """
 
     evaluations: int = EVALUATIONS
     population: int | None = None
-    width: float = WIDTH
+    width: float | None = None
+    points: int | None = None
     held_out: int = HELD_OUT
 
 
@@ -39,8 +46,8 @@ class Tables:
     search: Search = field(default_factory=Search)
 
 
-_OBJECTIVE = "objective"
-_TABLES = (*Tables.__dataclass_fields__, _OBJECTIVE)
+_ONE, _SEVERAL = "objective", "objectives"
+_TABLES = (*Tables.__dataclass_fields__, _ONE, _SEVERAL)
 
 
 @dataclass(frozen=True)
@@ -49,12 +56,12 @@ class DesignSpec:
 
     plan: Plan
     choose: Mapping[str, Choose]
-    objective: Objective
+    objectives: tuple[Objective, ...]
     limits: tuple[Limit, ...]
     search: Search
 
-    def run(self, **where: Any) -> Design:
-        """The design.
+    def run(self, **where: Any) -> Design | TradeOff:
+        """The design; of several objectives their trade-off.
 
         Parameters
         ----------
@@ -63,20 +70,25 @@ class DesignSpec:
 
         Returns
         -------
-        Design
+        Design or TradeOff
 
         Raises
         ------
         SomersaultError
-            As `design`.
+            As `design` and `trade_off`.
         """
         plan, search = self.plan, self.search
-        return design(
-            plan.simulation, self.choose, plan.vary, self.objective, limits=self.limits,
-            size=plan.size, seed=plan.seed, sequence=plan.sequence,
-            evaluations=search.evaluations, population=search.population,
-            width=search.width, held_out=search.held_out, **where,
-        )  # fmt: skip
+        options = {"population": search.population, "width": search.width, "points": search.points}
+        much: dict[str, Any] = {name: x for name, x in options.items() if x is not None}
+        much |= {
+            "size": plan.size, "seed": plan.seed, "sequence": plan.sequence,
+            "evaluations": search.evaluations, "held_out": search.held_out,
+        }  # fmt: skip
+        what, choose, vary = plan.simulation, self.choose, plan.vary
+        much |= {"limits": self.limits, **where}
+        if len(self.objectives) > 1:
+            return trade_off(what, choose, vary, self.objectives, **much)
+        return design(what, choose, vary, self.objectives[0], **much)
 
 
 def read_design(path: Path) -> DesignSpec:
@@ -120,22 +132,40 @@ def parse_design(given: Mapping[str, Any], beside: Path) -> DesignSpec:
         Naming the key, for what does not fit.
     """
     require_table(given)
-    for key in ("choose", _OBJECTIVE):
+    aims = _SEVERAL if _SEVERAL in given else _ONE
+    for key in ("choose", aims):
         if not isinstance(given.get(key), Mapping) or not given[key]:
             raise SomersaultError(f"a design's SPEC needs a table [{key}]; see docs/design.md")
+    if aims == _SEVERAL and _ONE in given:
+        raise SomersaultError("a design has [objective] or [objectives.NAME], and this has both")
     plan = parse_ensemble({k: v for k, v in given.items() if k not in _TABLES}, beside).plan
-    keys = structured({k: v for k, v in given.items() if k in _TABLES[:-1]}, Tables)
-    return DesignSpec(
-        plan, keys.choose, _objective(given[_OBJECTIVE]), tuple(keys.limits.values()), keys.search
-    )
+    keys = structured({k: v for k, v in given.items() if k in Tables.__dataclass_fields__}, Tables)
+    objectives: tuple[Objective, ...]
+    if aims == _ONE:
+        objectives = (_objective(_ONE, given[_ONE]),)
+    else:
+        objectives = tuple(_objective(f"{_SEVERAL}.{n}", x) for n, x in given[_SEVERAL].items())
+        if len(objectives) < 2:
+            raise SomersaultError(
+                f"a trade-off needs two tables [{_SEVERAL}.NAME] at least; one is [{_ONE}]"
+            )
+    for key, one in (("width", True), ("points", False)):
+        if getattr(keys.search, key) is not None and one != (len(objectives) == 1):
+            raise SomersaultError(
+                f"search.{key} is for {'one objective' if one else 'several objectives'}; leave it "
+                "out"
+            )
+    return DesignSpec(plan, keys.choose, objectives, tuple(keys.limits.values()), keys.search)
 
 
-def _objective(given: Mapping[str, Any]) -> Objective:
+def _objective(where: str, given: Any) -> Objective:
+    if not isinstance(given, Mapping):
+        raise SomersaultError(f"{where} must be a table; write [{where}]")
     table = dict(given)
     kind = table.pop("kind", None)
-    one_of("objective.kind", kind, Objective.kinds)
+    one_of(f"{where}.kind", kind, Objective.kinds)
     if "quantity" not in table:
-        raise SomersaultError("objective.quantity is missing; say what is reported of each run")
+        raise SomersaultError(f"{where}.quantity is missing; say what is reported of each run")
     return structured(table, Objective.kinds[kind])
 
 

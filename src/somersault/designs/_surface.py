@@ -59,7 +59,11 @@ class Surface:
     @property
     def variables(self) -> Mapping[str, Variable]:
         """The figure."""
-        return {FIGURE: Variable(self.trial.unit, words=self.trial.objective.words)}
+        return {
+            FIGURE: Variable(
+                self.trial.unit(self.trial.objective), words=self.trial.objective.words
+            )
+        }
 
     @property
     def together(self) -> int:

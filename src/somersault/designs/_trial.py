@@ -28,8 +28,9 @@ NOT_MADE = 1e6
 class Outcome:
     """What P candidates came to.
 
-    `figures` and `costs` (P,) are of the objective, `beyond` (P,) by how much of its limit each is
-    beyond the limits that it is beyond, summed: 0 where it keeps to all.
+    `figures` and `costs` (P,) are of the objective, or (P, M) of M that are traded off; `beyond`
+    (P,) is by how much of its limit each is beyond the limits that it is beyond, summed: 0 where it
+    keeps to all.
     """
 
     figures: Array
@@ -47,7 +48,8 @@ class Trial:
         Of the candidates.
     vary : mapping of str to Vary
         The scatter.
-    objective : Objective
+    objectives : tuple of Objective
+        One, or those that are traded off.
     limits : tuple of Limit
     size, seed, sequence
         Of the scatter, as for an ensemble.
@@ -55,7 +57,7 @@ class Trial:
 
     source: Source
     vary: Mapping[str, Vary]
-    objective: Objective
+    objectives: tuple[Objective, ...]
     limits: tuple[Limit, ...]
     size: int
     seed: int
@@ -70,6 +72,11 @@ class Trial:
     def chosen(self) -> Mapping[str, Choose]:
         """What is chosen."""
         return self.source.chosen
+
+    @property
+    def objective(self) -> Objective:
+        """The objective; the first, where several are traded off."""
+        return self.objectives[0]
 
     def table(self, parts: Array) -> Array:
         """The values (P, chosen) of candidates at parts of their ways between the bounds."""
@@ -90,13 +97,17 @@ class Trial:
     def run(self, table: Array, **where: Any) -> dict[str, Array]:
         """What is reported of the runs of candidates (P, chosen): (P, N) each, or of several cases
         (P, cases · N). `where` is as for `carried_out`."""
-        return self._rows(self.source.candidates(table), self.vary, where)
+        return self._rows(table, self.source.candidates(table), self.vary, where)
 
     def _rows(
-        self, groups: list[Group], vary: Mapping[str, Vary], where: Mapping[str, Any]
+        self, table: Array, groups: list[Group], vary: Mapping[str, Vary], where: Mapping[str, Any]
     ) -> dict[str, Array]:
         parts = [self._of_group(group, vary, where) for group in groups]
-        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+        rows = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+        shape, columns = rows[ENDED].shape, dict(zip(self.chosen, table.T, strict=True))
+        for name in self._read - set(rows):
+            rows[name] = np.broadcast_to(columns[name][:, None], shape)
+        return rows
 
     def _of_group(
         self, group: Group, vary: Mapping[str, Vary], where: Mapping[str, Any]
@@ -112,23 +123,33 @@ class Trial:
             else:
                 rows = planned.run(0, planned.count)
             parts.append({n: x.reshape(group.count, -1) for n, x in rows.items()})
-        return {name: np.concatenate([part[name] for part in parts], 1) for name in self._read}
+        return {name: np.concatenate([part[name] for part in parts], 1) for name in self._reported}
 
     def _not_made(self, count: int, vary: Mapping[str, Vary]) -> dict[str, Array]:
         """What is reported of candidates that cannot be made: none of their runs can begin."""
         known, endings = self.simulation.variables, self.simulation.endings
         shape = count, len(self.source.cases) * self.ensemble(self.simulation, vary).count
-        rows = {n: np.full(shape, known[n].fill, known[n].dtype) for n in self._read - {ENDED}}
+        rows = {n: np.full(shape, known[n].fill, known[n].dtype) for n in self._reported - {ENDED}}
         return rows | {ENDED: np.full(shape, endings.code(endings.unsound), np.uint8)}
 
     @cached_property
     def _read(self) -> set[str]:
-        return {self.objective.quantity, ENDED, *(n for row in self._limited for n in row)}
+        return {
+            *(one.quantity for one in self.objectives),
+            ENDED,
+            *(n for row in self._limited for n in row),
+        }
+
+    @property
+    def _reported(self) -> set[str]:
+        """What is read of the runs: all but what is chosen."""
+        return self._read - set(self.chosen)
 
     @cached_property
     def _limited(self) -> list[list[str]]:
         """What each limit is for, of all that is reported."""
         there = [n for n, v in self.simulation.variables.items() if not v.over_time]
+        there += self.chosen
         return [fnmatch.filter(there, limit.quantity) or [limit.quantity] for limit in self.limits]
 
     def failed(self, ended: Array) -> Array:
@@ -137,14 +158,27 @@ class Trial:
         return np.isin(ended, [endings.code(word) for word in endings.failed])
 
     def figures(self, rows: Mapping[str, Array]) -> Array:
-        """The objective's figures of the runs of some candidates."""
-        return self.objective.figures(rows[self.objective.quantity], self.failed(rows[ENDED]))
+        """The objective's figures (P,) of the runs of P candidates."""
+        return self.all_figures(rows)[:, 0]
+
+    def all_figures(self, rows: Mapping[str, Array]) -> Array:
+        """The figures (P, objectives) of the runs of P candidates."""
+        failed = self.failed(rows[ENDED])
+        figures = [one.figures(rows[one.quantity], failed) for one in self.objectives]
+        return np.stack(figures, 1)
 
     def outcome(self, table: Array, **where: Any) -> Outcome:
-        """What candidates (P, chosen) come to."""
+        """What candidates (P, chosen) come to, by the objective."""
+        every = self.traded(table, **where)
+        return Outcome(every.figures[:, 0], every.costs[:, 0], every.beyond)
+
+    def traded(self, table: Array, **where: Any) -> Outcome:
+        """What candidates (P, chosen) come to, by all objectives."""
         groups = self.source.candidates(table)
-        rows = self._rows(groups, self.vary, where)
-        alone = self._rows(groups, {}, {}) if any(x.unperturbed for x in self.limits) else rows
+        rows = self._rows(table, groups, self.vary, where)
+        alone = rows
+        if any(limit.unperturbed for limit in self.limits):
+            alone = self._rows(table, groups, {}, {})
         beyond = np.repeat(
             [0.0 if group.cases else NOT_MADE for group in groups],
             [group.count for group in groups],
@@ -153,24 +187,38 @@ class Trial:
             judged = alone if limit.unperturbed else rows
             failed = self.failed(judged[ENDED])
             beyond += sum(limit.beyond(judged[name], failed) for name in names)
-        costs = self.objective.costs(rows[self.objective.quantity], self.failed(rows[ENDED]))
-        return Outcome(self.figures(rows), costs, beyond)
+        failed = self.failed(rows[ENDED])
+        costs = [one.costs(rows[one.quantity], failed) for one in self.objectives]
+        return Outcome(self.all_figures(rows), np.stack(costs, 1), beyond)
 
-    @property
-    def unit(self) -> str:
-        """Of the objective's figure: that of its quantity, or "1" for a share."""
-        variable = self.simulation.variables[self.objective.quantity]
-        return variable.unit if isinstance(self.objective, Averaged) else "1"
+    def words(self, objective: Objective) -> str:
+        """What an objective is, in words: of something chosen its name."""
+        return objective.quantity if objective.quantity in self.chosen else objective.words
+
+    def unit(self, objective: Objective) -> str:
+        """Of an objective's figure: that of its quantity, or "1" for a share."""
+        if not isinstance(objective, Averaged):
+            return "1"
+        if objective.quantity in self.chosen:
+            return self.chosen[objective.quantity].unit
+        return self.simulation.variables[objective.quantity].unit
 
     def check(self) -> None:
         """SomersaultError for a quantity that is not reported, and where nothing is scattered."""
         there = [n for n, v in self.simulation.variables.items() if not v.over_time]
         for name in sorted(self._read - {ENDED}):
-            if name not in there:
+            if name in there and name in self.chosen:
+                raise SomersaultError(f"{name} is both chosen and reported; rename what is chosen")
+            if name not in there and name not in self.chosen:
                 raise SomersaultError(
                     f"{name} is not reported of these {self.simulation.endings.called}; there are "
                     f"{', '.join(there)}"
                 )
+        if all(one.quantity in self.chosen for one in self.objectives):
+            raise SomersaultError(
+                f"{self.objective.quantity} is chosen, so nothing has to be run for it; let an "
+                "objective be of something reported"
+            )
         if not self.vary:
             raise SomersaultError(
                 "nothing is scattered, so nothing is more reliable than anything else; say what "
