@@ -1053,6 +1053,7 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
             "evaluations": 4,
             "population": 4,
             "width": 0.2,
+            "polish": False,
             "held_out": 2,
             "progress": False,
         },

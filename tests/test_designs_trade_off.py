@@ -225,7 +225,7 @@ def test_the_shell_trades_off(tmp_path: Path) -> None:
     [
         (("[objectives.soft]", "[objective]"), "has both"),
         (('[objectives.soft]\nkind = "mean"\nquantity = "K"\n', ""), "two tables"),
-        (("evaluations = 48", "width = 0.2"), "search.width is for one objective"),
+        (("evaluations = 48", "width = 0.2"), "search.width is for objectives, one alone"),
         (("[objectives.twist]", "[objectives]\nodd = 3\n[objectives.twist]"), "objectives.odd"),
         (('quantity = "K"', ""), "objectives.soft.quantity is missing"),
     ],

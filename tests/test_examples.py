@@ -59,3 +59,30 @@ def test_a_gain_is_varied_and_an_ensemble_goes_on(tmp_path: Path) -> None:
     lasting = found[0].fraction(ended="duration")["fraction"]
     assert lasting.sel(gain=-16.0) > 0.8
     assert lasting.sel(gain=0.0) < 0.3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("example", "arguments", "said"),
+    [
+        ("layout_design", ["furrer", "shoulder", "24"], r"small motions: angle 1\.\d+, K"),
+        ("doll_design", ["doll_weighted", "shoulder", "48"], r"arms of \d+ g, K = .* somersaults"),
+        ("legs_design", ["biped", "leg", "24"], r"1\.\d times less on springs"),
+    ],
+)
+def test_designs_are_found_and_go_on(
+    example: str, arguments: list[str], said: str, tmp_path: Path
+) -> None:
+    """What is kept of a search is not run again, and the same is said of it."""
+    command = [sys.executable, str(EXAMPLES / f"{example}.py"), *arguments]
+    told = [
+        subprocess.run(
+            command, capture_output=True, encoding="utf-8", cwd=tmp_path, check=True
+        ).stdout
+        for _ in range(2)
+    ]
+    assert re.search(said, told[0])
+    assert told[0] == told[1]
+    made = {file.name for file in tmp_path.iterdir()}
+    assert f"{example}.png" in made
+    assert all((tmp_path / name / "design.json").exists() for name in made if "." not in name)

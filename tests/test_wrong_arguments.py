@@ -145,6 +145,7 @@ NOT_FOR_USERS = {
             "PlanSpec*",
             "Flight",
             "Flights",
+            "Flights.apart",
             "Flights.ending_in_words",
             "Flights.history",
             "Flights.run",

@@ -15,6 +15,7 @@ from somersault._core.numbers import number
 from somersault.designs._choose import Choose
 from somersault.designs._limit import Limit
 from somersault.designs._objective import Objective
+from somersault.designs._polish import LeastSquares
 from somersault.designs._result import Design
 from somersault.designs._search import search
 from somersault.designs._study import EVALUATIONS, HELD_OUT, SIZE, WIDTH, Size, study
@@ -40,6 +41,7 @@ def design(
     evaluations: int = EVALUATIONS,
     population: int | None = None,
     width: float = WIDTH,
+    polish: bool = False,
     held_out: int = HELD_OUT,
     out: str | Path | None = None,
     threads: int | None = None,
@@ -82,6 +84,9 @@ def design(
     width : float
         How far about the start the first candidates are scattered (standard deviation), as a part
         of each range: little where the start is good already.
+    polish : bool
+        Whether least squares go on from the best of the search, with all errors of all landings:
+        for the mean "landing_error" of flights.
     held_out : int
         How many other starts the best and the first are judged on in the end.
     out : str or Path, optional
@@ -120,11 +125,13 @@ def design(
     truth("progress", progress)
     if not 0 < number("width", width) <= 1:
         raise SomersaultError(f"width must be above 0 and at most 1, and is {width:g}")
+    truth("polish", polish)
     much = Size(size, seed, sequence, evaluations, population, held_out)
     sought = study(
         what, choose, vary, (objective,), limits, much, out, {"width": width},
         threads=threads, workers=workers, scheduler=scheduler, security=security,
     )  # fmt: skip
+    squares = LeastSquares(sought) if polish else None
     rises, best = objective.rises, list[float]()
 
     def outcome(parts: Array) -> Outcome:
@@ -142,6 +149,12 @@ def design(
         search(sought.begins, width, evaluations, population, seed, sought.journal, outcome, heard)
     candidates, costs = sought.found()
     parts = candidates[np.argmin(costs)]
+    if squares is not None:
+        steps = squares.steps_from(parts)
+        came = outcome(steps)
+        better = np.where(came.beyond <= 0, came.costs, np.inf)
+        if better.min() < costs.min():
+            parts = steps[np.argmin(better)]
     table = sought.trial.table(np.stack([sought.begins, parts]))
     fresh, rows = sought.judged(table)
     return Design(sought.trial, fresh, table, parts, sought.journal.generations, rows)

@@ -27,12 +27,13 @@ _HINTS = get_type_hints(Choose)
 class Search:
     """[search]: how long is searched, and on how many other starts the best is judged.
 
-    `width` is for one objective, `points` for a trade-off.
+    `width` and `polish` are for one objective, `points` for a trade-off.
     """
 
     evaluations: int = EVALUATIONS
     population: int | None = None
     width: float | None = None
+    polish: bool | None = None
     points: int | None = None
     held_out: int = HELD_OUT
 
@@ -46,6 +47,7 @@ class Tables:
     search: Search = field(default_factory=Search)
 
 
+_FOR_ONE, _FOR_MANY = ("width", "polish"), ("points",)  # keys of [search]
 _ONE, _SEVERAL = "objective", "objectives"
 _TABLES = (*Tables.__dataclass_fields__, _ONE, _SEVERAL)
 
@@ -78,7 +80,7 @@ class DesignSpec:
             As `design` and `trade_off`.
         """
         plan, search = self.plan, self.search
-        options = {"population": search.population, "width": search.width, "points": search.points}
+        options = {name: getattr(search, name) for name in ("population", *_FOR_ONE, *_FOR_MANY)}
         much: dict[str, Any] = {name: x for name, x in options.items() if x is not None}
         much |= {
             "size": plan.size, "seed": plan.seed, "sequence": plan.sequence,
@@ -149,12 +151,10 @@ def parse_design(given: Mapping[str, Any], beside: Path) -> DesignSpec:
             raise SomersaultError(
                 f"a trade-off needs two tables [{_SEVERAL}.NAME] at least; one is [{_ONE}]"
             )
-    for key, one in (("width", True), ("points", False)):
-        if getattr(keys.search, key) is not None and one != (len(objectives) == 1):
-            raise SomersaultError(
-                f"search.{key} is for {'one objective' if one else 'several objectives'}; leave it "
-                "out"
-            )
+    others, of = (_FOR_MANY, "several") if len(objectives) == 1 else (_FOR_ONE, "one alone")
+    for key in others:
+        if getattr(keys.search, key) is not None:
+            raise SomersaultError(f"search.{key} is for objectives, {of}; leave it out")
     return DesignSpec(plan, keys.choose, objectives, tuple(keys.limits.values()), keys.search)
 
 

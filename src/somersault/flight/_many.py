@@ -17,7 +17,14 @@ from somersault.flight._batch import Batch
 from somersault.flight._flight import Flight
 from somersault.flight._flown import flown
 from somersault.flight._maneuver import STEPS, Maneuver, check_limits_of_flight, flight_time
-from somersault.flight._report import ENDINGS, Report, check, target_of, variables
+from somersault.flight._report import (
+    ENDINGS,
+    Report,
+    check,
+    error_weights,
+    target_of,
+    variables,
+)
 from somersault.flight._reported import reported, watch_from_takeoff
 from somersault.flight._takeoff import Takeoff, require_takeoff
 from somersault.flight._targets import body_names, targets
@@ -205,6 +212,28 @@ class Flights:
         """
         begun, times = self.batch.begun(values), np.array([0.0, self.batch.duration])
         return flown(self.batch, times, np.zeros(3), self.accuracy, self.steps, begun)
+
+    def apart(self) -> tuple[Flights, dict[str, tuple[float, float]]]:
+        """What the landing error is made of: e² = Σ (w (q − a))².
+
+        Returns
+        -------
+        flights : Flights
+            The same, reporting each q.
+        parts : dict of str to (float, float)
+            The angle a (rad, m) that is aimed at, and the weight w, by q's name.
+
+        Raises
+        ------
+        SomersaultError
+            Without angles to land at.
+        """
+        if not self.target:
+            raise SomersaultError("these flights have no angles to land at; give them some")
+        weights = error_weights(self.target)
+        report = replace(self.report, quantities=tuple(self.target))
+        parts = {name: (angle, weights[name]) for name, angle in self.target.items()}
+        return replace(self, report=report), parts
 
     def ending_in_words(self, ending: str) -> str:
         """What flights did that ended so.

@@ -149,14 +149,18 @@ def landing_error(target: Mapping[str, float], landed: Mapping[str, Array | floa
         if name not in landed:
             raise SomersaultError(f"the landing says nothing of {name}, which the target names")
 
-    def squared(name: str) -> Array:
+    def part(name: str, weight: float) -> Array:
         off = floats(f"landed {name}", landed[name]) - floats(f"target {name}", target[name])
-        return off**2
+        return (weight * off) ** 2
 
-    body = sum((squared(name) for name in ANGLES if name in target), np.zeros(()))
-    joints = [name for name in target if name not in ANGLES]
-    shape = sum((squared(name) for name in joints), np.zeros(())) / max(len(joints), 1)
-    return np.sqrt((body + shape) / 4)
+    squares = [part(name, weight) for name, weight in error_weights(target).items()]
+    return np.sqrt(sum(squares, np.zeros(())))
+
+
+def error_weights(target: Mapping[str, float]) -> dict[str, float]:
+    """The weight of each angle in a landing error, whose square is that of the weighted ones."""
+    joints = len([name for name in target if name not in ANGLES])
+    return {name: 0.5 if name in ANGLES else 0.5 / np.sqrt(joints) for name in target}
 
 
 def check(report: Report, target: Mapping[str, float], model: Model) -> None:
