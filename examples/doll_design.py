@@ -50,7 +50,7 @@ def main(model: str = "doll_weighted", joint: str = "shoulder", candidates: str 
         f"K = {found.best['K']:.2f}: {found.figure / TURN:.1f} somersaults of {SOMERSAULTS}, "
         f"{found.first_figure / TURN:.1f} with {K}"
     )
-    found.plot(steps=21, reach=0.4).savefig("doll_design.png", dpi=160)
+    found.plot(steps=41, reach=0.4).savefig("doll_design.png", dpi=160)
 
     traded = so.designs.trade_off(
         thrown, {"K": spring, "arm": weight}, vary, [life, so.designs.Mean("arm")],

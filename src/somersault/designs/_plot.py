@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -43,13 +43,11 @@ def plot(
             ax.set(xlabel=_with_unit(name, chosen[name].unit))
             if chosen[name].scale == "log":
                 ax.set_xscale("log")
-                shown = row["value"].values[[0, len(row["value"]) // 2, -1]]
-                ax.set_xticks(shown, [f"{x:.3g}" for x in shown])
-                ax.minorticks_off()
+                _spell_out(ax.xaxis)
         for ax in axes[: 1 + len(names)]:
             ax.axhspan(*interval, color=look.ORANGE, alpha=0.25, lw=0)
             ax.axhline(figure, color=look.ORANGE, lw=1)
-        axes[0].set_ylabel(history.attrs["objective"])
+        axes[0].set_ylabel(_with_unit(history.attrs["objective"], history["best"].attrs["units"]))
         for ax in axes[1 + len(names) :]:
             ax.set_visible(False)
         return picture
@@ -71,11 +69,19 @@ def plot_map(data: xr.Dataset, chosen: Mapping[str, Choose], best: Mapping[str, 
         ):  # fmt: skip
             if chosen[name].scale == "log":
                 scaled("log")
-                axis.set_major_formatter("{x:g}")
-                axis.set_minor_formatter("{x:g}")
+                _spell_out(axis)
         words = _with_unit(data.attrs["objective"], data["figure"].attrs["units"])
         picture.colorbar(shown, ax=ax).set_label(words)
         return picture
+
+
+def _spell_out(axis: Any) -> None:
+    """Numbers along a logarithmic axis as people write them."""
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter("{x:g}")
+    axis.set_minor_formatter(NullFormatter())
 
 
 def _with_unit(name: str, unit: str) -> str:

@@ -146,7 +146,8 @@ class Design:
             {
                 "figure": (along, figures),
                 "best": ("generation", np.where(np.isinf(best), np.nan, best)
-                         * (-1 if objective.rises else 1)),
+                         * (-1 if objective.rises else 1),
+                         {"units": self.trial.unit(objective)}),
                 "chosen": ((*along, "quantity"), values),
             },
             {"quantity": list(self.trial.chosen)},
