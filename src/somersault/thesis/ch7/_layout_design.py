@@ -105,7 +105,7 @@ def _design(
 
 @cache
 def by_margin() -> Design:
-    """The layout that is the most stable for small motions, where arms and springs are a bit off."""
+    """The layout most stable for small motions, where arms and springs are a little off."""
     layouts = spins("furrer", pose={"shoulder": 1.3}, stiffness={"shoulder": 1.2})
     choose = {
         "arms": replace(_ARMS, sets="pose.shoulder"),
