@@ -15,7 +15,9 @@ from test_designs import ARMS, BOTH, SCATTER, TWISTED, Bowl
 import somersault as so
 from somersault import SomersaultError
 from somersault.designs import Choose, Limit, Mean, Quantile, Share, trade_off
-from somersault.designs._front import front
+from somersault.designs._front import front, search_front
+from somersault.designs._journal import Journal
+from somersault.designs._trial import Outcome
 
 pytest.importorskip("pymoo")
 AIMS = (Mean("error"), Mean("torque"))
@@ -84,6 +86,18 @@ def test_the_same_call_finds_the_same_and_goes_on_where_it_stopped(tmp_path: Pat
     assert files[0] == files[1]
     with pytest.raises(SomersaultError, match="holds another design"):
         found((*AIMS, Mean("share_of_x")), out=tmp_path / "part", evaluations=150)
+
+
+def test_where_there_is_nothing_new_to_try_the_search_ends() -> None:
+    judged: list[int] = []
+
+    def outcome(parts: np.ndarray) -> Outcome:
+        return Outcome(np.zeros((len(parts), 2)), np.zeros((len(parts), 2)), np.zeros(len(parts)))
+
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("pymoo.core.mating.Mating.do", lambda *given, **options: [])
+        search_front(np.zeros(2), 2, 100, 8, 0, Journal(None, {}), outcome, judged.append)
+    assert judged == [8]
 
 
 def test_numpys_own_random_numbers_are_left_alone() -> None:

@@ -145,7 +145,6 @@ NOT_FOR_USERS = {
             "PlanSpec*",
             "Flight",
             "Flights",
-            "Flights.apart",
             "Flights.ending_in_words",
             "Flights.history",
             "Flights.run",

@@ -33,12 +33,14 @@ def search_front(
     judged. All goes into the journal; what is there already is not run again.
     """
     from pymoo.algorithms.moo.nsga2 import NSGA2
+    from pymoo.config import Config
     from pymoo.core.evaluator import Evaluator
     from pymoo.core.problem import Problem
     from pymoo.core.termination import NoTermination
     from pymoo.problems.static import StaticProblem
     from scipy.stats import qmc
 
+    Config.warnings["not_compiled"] = False  # it would be printed among what a command prints
     spread = qmc.Sobol(len(begins), rng=seed, bits=32).random_base2(population.bit_length())
     first = np.concatenate([begins[None], spread[: population - 1]])
     problem = Problem(n_var=len(begins), n_obj=objectives, n_ieq_constr=1, xl=0.0, xu=1.0)
@@ -47,6 +49,8 @@ def search_front(
     judged = generation = 0
     while judged < evaluations:
         offspring = evolution.ask()
+        if offspring is None:  # there is nothing new to try
+            break
         candidates = np.clip(np.asarray(offspring.get("X"), float), 0.0, 1.0)
         known = journal.found(generation, candidates)
         if known is None:

@@ -114,9 +114,11 @@ class TradeOff:
         which = whole_number("objective", objective, 0, len(self.trial.objectives) - 1)
         aims = (self.trial.objectives[which],)
         both = [0, 1 + at]
+        whole = len(self.generations[0][0])  # the last may be smaller, where little was left to try
         generations = [
             (parts, Outcome(o.figures[:, which], o.costs[:, which], o.beyond))
             for parts, o in self.generations
+            if len(parts) == whole
         ]
         return Design(
             replace(self.trial, objectives=aims), replace(self.held_out, objectives=aims),
