@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -104,3 +106,42 @@ def test_a_spin_that_is_none_is_refused() -> None:
         so.stability.spins("furrer", pose={"knee": 0.1})
     with pytest.raises(SomersaultError, match="damping"):
         so.stability.spins("furrer", damping={"shoulder": -0.1})
+
+
+SPEC = {
+    "model": "furrer",
+    "spin": {"pose": {"shoulder": 1.3}, "stiffness": {"shoulder": 1.1}},
+    "vary": {"softer": {"adds_to": "stiffness.shoulder", "normal": [0.0, 0.2]}},
+    "sample": {"size": 20, "sequence": "sobol"},
+}
+
+
+def test_a_spec_of_spins_is_the_same() -> None:
+    planned = so.ensembles.parse_ensemble(SPEC, Path()).plan
+    margins = so.ensembles.carried_out(planned).dataset["stability_margin"]
+    off = {"softer": so.Vary(adds_to="stiffness.shoulder", normal=[0.0, 0.2])}
+    other = so.ensemble(LAYOUT, vary=off, size=20, sequence="sobol").dataset["stability_margin"]
+    assert margins.values.tobytes() == other.values.tobytes()
+    design = SPEC | {
+        "choose": {"K": {"sets": "stiffness.shoulder", "between": [0.5, 2.0]}},
+        "objective": {"kind": "mean", "quantity": "stability_margin", "largest": True},
+        "search": {"evaluations": 40, "held_out": 40},
+    }
+    found = so.designs.parse_design(design, Path()).run()
+    assert found.best["K"] == pytest.approx(1.1, abs=0.15)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"takeoff": {"spin": 1.0}}, "takeoff is no key of an ensemble of spins"),
+        ({"spin": {"poses": {}}}, "spin.poses is no key"),
+        ({"spin": {"pose": {"knee": 1.0}}}, "knee"),
+        ({"spin": {"axis": "4"}}, "4"),
+        ({"model": "nobody"}, "nobody"),
+        ({"spin": 3}, "spin must be"),
+    ],
+)
+def test_a_spec_of_spins_that_is_none_is_refused(change: dict[str, Any], said: str) -> None:
+    with pytest.raises(SomersaultError, match=said):
+        so.ensembles.parse_ensemble(SPEC | change, Path())

@@ -1,4 +1,4 @@
-"""Ensembles described in a TOML file: the SPEC of a flight or of a robot's run, and what varies."""
+"""Ensembles described in a TOML file: of flights, a robot's runs or spins, and what varies."""
 
 from __future__ import annotations
 
@@ -15,7 +15,16 @@ from somersault.flight import KEYS, Maneuver, Report, flights
 from somersault.robot import KEYS as RUN_KEYS
 from somersault.robot import parse_runs
 from somersault.simulation import Simulation
-from somersault.spec import Unfit, read_as, read_toml, require_table, structured, structured_within
+from somersault.spec import (
+    Unfit,
+    model_beside,
+    read_as,
+    read_toml,
+    require_table,
+    structured,
+    structured_within,
+)
+from somersault.stability import spins
 
 _ACCURACY = 1e-7
 _HINTS = get_type_hints(Vary)
@@ -51,6 +60,26 @@ class Tables:
 
 
 _TABLES = tuple(Tables.__dataclass_fields__)
+_DRAWN = ("vary", "sample")  # those of an ensemble that reports what it reports
+
+
+@dataclass(frozen=True)
+class Spin:
+    """[spin]: the spins that are judged, as in `stability.spins`."""
+
+    pose: Mapping[str, float] = field(default_factory=dict)
+    stiffness: Mapping[str, float] = field(default_factory=dict)
+    damping: Mapping[str, float] = field(default_factory=dict)
+    axis: str | None = None
+    lock: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class SpinKeys:
+    """The keys of a SPEC of many spins besides those of what varies."""
+
+    model: str
+    spin: Spin
 
 
 @dataclass(frozen=True)
@@ -113,6 +142,8 @@ def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
         raise SomersaultError("vary is empty; say what varies, [vary.NAME], or leave it out")
     if "robot" in given:
         return _of_runs(given, beside)
+    if "spin" in given:
+        return _of_spins(given, beside)
     if "samples" in given:
         raise SomersaultError("samples is no key of an ensemble's SPEC; histories are in [report]")
     flown_keys = [key for key in KEYS if key != "samples"]
@@ -137,10 +168,22 @@ def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
 
 def _of_runs(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
     """Runs of a robot, which report what they report."""
-    tables = ("vary", "sample")
-    _require_keys(given, [*RUN_KEYS, *tables], "an ensemble of runs")
-    runs = parse_runs({k: v for k, v in given.items() if k not in tables}, beside)
+    _require_keys(given, [*RUN_KEYS, *_DRAWN], "an ensemble of runs")
+    runs = parse_runs({k: v for k, v in given.items() if k not in _DRAWN}, beside)
     return EnsembleSpec(_planned(runs, _tables(given)), None, tuple(runs.variables))
+
+
+def _of_spins(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
+    """Spins of a model, which report how stable each is for small motions."""
+    keys = tuple(SpinKeys.__dataclass_fields__)
+    _require_keys(given, [*keys, *_DRAWN], "an ensemble of spins")
+    one = structured({k: v for k, v in given.items() if k in keys}, SpinKeys)
+    many = spins(
+        model_beside(one.model, file_path("beside", beside)), pose=one.spin.pose,
+        stiffness=one.spin.stiffness, damping=one.spin.damping, axis=one.spin.axis,
+        lock=one.spin.lock,
+    )  # fmt: skip
+    return EnsembleSpec(_planned(many, _tables(given)), None, tuple(many.variables))
 
 
 def _tables(given: Mapping[str, Any]) -> Tables:
