@@ -44,7 +44,7 @@ def main(model: str = "biped", joint: str = "leg", candidates: str = "240") -> N
         )
         found[name] = so.design(
             runs, choose, {"momentum": off}, so.designs.Mean("landing_error", counts_as=np.pi),
-            seed=1, evaluations=int(candidates), population=12, held_out=512,
+            seed=1, evaluations=int(candidates), population=12, polish=True, held_out=512,
             out=f"legs_{name}", progress=sys.stderr.isatty(),
         )  # fmt: skip
         best = ", ".join(f"{key} {x:.3g} {choose[key].unit}" for key, x in found[name].best.items())

@@ -67,7 +67,7 @@ def chosen(springs: bool) -> Design:
     }
     return design(
         _runs(legs), choose, vary, goal, size=_STARTS, seed=1, evaluations=240, population=12,
-        held_out=_HELD_OUT,
+        polish=True, held_out=_HELD_OUT,
     )  # fmt: skip
 
 
