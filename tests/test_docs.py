@@ -57,7 +57,7 @@ def test_every_room_has_a_page_of_reference() -> None:
 
 def test_every_key_of_a_spec_is_in_the_documentation() -> None:
     """As code: in backticks, or in a block."""
-    from somersault.ensembles._spec import Reported, Sample, Tables
+    from somersault.ensembles._spec import Reported, Sample, Spin, SpinKeys, Tables
     from somersault.flight._spec import Keys
     from somersault.flight._spec_motion import Compliance, OffNominal, Recording
     from somersault.flight.behaviours._registry import Registry
@@ -80,6 +80,8 @@ def test_every_key_of_a_spec_is_in_the_documentation() -> None:
         Tables,
         Sample,
         Reported,
+        Spin,
+        SpinKeys,
         Recording,
         Compliance,
         OffNominal,
