@@ -148,7 +148,7 @@ def test_a_motion_has_film_page_and_numbers(tmp_path):
     book = so.fly("book", so.Takeoff(spin=8.6), 0.2, samples=3)
 
     def entry(name):
-        motion = Motion({**flights, "book": book}, 0.5, {"size": (192, 108)})
+        motion = Motion({**flights, "book": book}, 0.5, {"size": (192, 112)})
         return Entry(name, "<b>Title", "ch4", lambda: Result("says", "ours", motion=motion))
 
     for out in ("one", "two"):

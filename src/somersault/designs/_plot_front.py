@@ -31,7 +31,7 @@ def plot_front(data: xr.Dataset, first: xr.Dataset, searched: Array, parts: Arra
         figures, beaten = data["figure"].values, data["beaten"].values
         off = np.abs(np.stack([data["low"].values, data["high"].values]) - figures)
         for k, ax in zip(others, axes, strict=False):
-            ax.plot(searched[:, k], searched[:, 0], ".", ms=3, color=look.LIGHT_TO_DARK[0],
+            ax.plot(searched[:, k], searched[:, 0], ".", ms=3, color=look.LIGHT_TO_DARK[1],
                     label="candidates, starts of the search")  # fmt: skip
             for which, fill, words in (
                 (~beaten, look.BLUE, "front, other starts"), (beaten, "white", "beaten there"),

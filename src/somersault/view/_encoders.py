@@ -14,7 +14,9 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 
-_THREADS = 1  # with two a film was, once in a hundred times, another one byte for byte
+# With two a film was, once in a hundred times, another one byte for byte. With one it still may be,
+# in a few hundred times, where the height is no multiple of 16: x264 fills up the last blocks.
+_THREADS = 1
 
 
 class Encoder(ABC):
