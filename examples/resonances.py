@@ -2,7 +2,8 @@
 
 Run with `python examples/resonances.py [MODEL [JOINT]]`: any free model with a joint, or a mirrored
 pair of them, whose angle and spring are to be varied. Writes resonances.png, a stability chart with
-the resonances on it, and flies through the strongest of them with many springs. Half a minute.
+the resonances on it, and flies through the strongest of them with many springs. Half a minute, a
+minute for a gymnast.
 """
 
 import sys
@@ -47,7 +48,7 @@ def across(model: str, joint: str, angle: float) -> None:
         print(f"{joint} at {angle} rad: no spring lets a tilt of {TILT} rad burst")
         return
     first, last = min(bursting), max(bursting)
-    reach = last - first
+    reach = max(last - first, 10 * (springs[1] - springs[0]))
     tried = np.linspace(first - reach, last + reach, 121)
     side = next(name for name in steady.outboard_inertias if name.endswith(joint))
     arms = so.JointTakeoff("sprung", angle=angle, stiffness=0.0, hold=True)

@@ -103,6 +103,28 @@ def test_an_undeviated_spin_stays() -> None:
     np.testing.assert_allclose(flown_rate(flight), 8.0, rtol=1e-9)
 
 
+def test_a_ball_that_has_to_be_held_is_refused(tmp_path) -> None:
+    """An arm stands up and the other down: the ball of the head is not at rest by itself."""
+    arm = (
+        '<body name="{0}_arm" pos="0 {1} 0.45"><joint name="{0}" axis="1 0 0"/>'
+        '<inertial pos="0 0 -0.35" mass="{2}" diaginertia="0.12 0.12 0.01"/></body>'
+    )
+    file = tmp_path / "ball.xml"
+    file.write_text(
+        '<mujoco><compiler angle="radian"/><worldbody><body name="trunk"><freejoint/>'
+        '<inertial pos="0.03 0 0" mass="50" diaginertia="8.0 7.6 0.9"/>'
+        + arm.format("left", 0.2, 4) + arm.format("right", -0.2, 3.3)
+        + '<body name="head" pos="0 0 0.3"><joint name="neck" type="ball"/>'
+        '<inertial pos="0 0 0.1" mass="6" diaginertia="0.05 0.05 0.05"/></body>'
+        "</body></worldbody></mujoco>"
+    )  # fmt: skip
+    spin = so.spin(str(file), pose={"left": 1.3, "right": -1.3})
+    springs = {"left": 1.0, "right": 1.0, "neck": 6.0}
+    with pytest.raises(so.SomersaultError, match="ball neck has to be held"):
+        so.deviated_flight(spin, RATE, 1.0, stiffness=springs)
+    so.deviated_flight(spin, RATE, 0.1, stiffness=springs, lock=["neck"])
+
+
 def flown_rate(flight: so.Flight) -> float:
     return float(np.linalg.norm(flight.landing.angular_velocity))
 

@@ -31,6 +31,28 @@ angle = 0.3
 rest = 0.2
 stiffness = 1e7
 """
+ASKED = """
+model = "furrer"
+[plan]
+torque = 60.0
+nodes = 40
+starts = 8
+[plan.joints]
+shoulder = [0.2, 2.8]
+"""
+CHOSEN = """
+[choose.spin]
+sets = "takeoff.spin"
+between = [8.0, 9.0]
+[objective]
+kind = "mean"
+quantity = "time"
+largest = true
+counts_as = 0.0
+[search]
+evaluations = 400
+held_out = 64
+"""
 # What is flown and drawn, by name, without outputs; {} is a folder with the files of `files`.
 COMMANDS: dict[str, list[str]] = {
     "fly": ["fly", "{}/long.toml"],
@@ -43,6 +65,8 @@ COMMANDS: dict[str, list[str]] = {
                 "--workers", "2"],
     "reproduce": ["reproduce", "ch3", "ch4", "--out", "{}/out/report"],
     "stability": ["stability", "gymnast"],
+    "plan": ["plan", "{}/asked.toml", "--out", "{}/out/plan.toml", "--processes", "2"],
+    "design": ["design", "{}/chosen.toml", "--out", "{}/out/design"],
     "map": ["map", "human_layout", "--out", "{}/out/map.png"],
 }  # fmt: skip
 
@@ -56,6 +80,8 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "short.toml").write_text(LONG.format(duration=10.0))
     (tmp_path / "many.toml").write_text(SPEC.format(size=100_000))
     (tmp_path / "some.toml").write_text(SPEC.format(size=100))
+    (tmp_path / "asked.toml").write_text(ASKED)
+    (tmp_path / "chosen.toml").write_text(SPEC.format(size=64) + CHOSEN)
     return tmp_path
 
 
@@ -125,7 +151,8 @@ def interrupted(name: str, moment: float, folder: Path) -> float:
 
 
 @pytest.mark.parametrize(
-    ("name", "moment"), [("fly", 4.0), ("memory", 0.3), ("threads", 0.0), ("workers", 3.0)]
+    ("name", "moment"),
+    [("fly", 4.0), ("memory", 0.3), ("threads", 0.0), ("workers", 3.0), ("plan", 4.0)],
 )
 def test_a_command_is_interrupted(name: str, moment: float, folder: Path) -> None:
     interrupted(name, moment, folder)

@@ -244,6 +244,7 @@ def test_derivatives_are_those_of_differences() -> None:
         ({"duration": (1.5, 0.5)}, "duration goes from 1.5 to 0.5, which is empty"),
         ({"duration": 0.0}, "duration must be positive"),
         ({"joints": ["elbow"]}, "elbow"),
+        ({"joints": {"nope": (0.0, 1.0)}}, "has no joint 'nope'"),
         ({"joints": {"shoulder": (2.8, 0.2)}}, "joints shoulder goes from 2.8 to 0.2"),
         ({"start": {"shoulder": 3.0}}, "start left_shoulder=3 is outside its range, 0.2 to 2.8"),
         ({"end": {"shoulder": 0.1}}, "end left_shoulder=0.1 is outside its range"),

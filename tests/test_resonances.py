@@ -316,6 +316,10 @@ def test_what_does_not_burst_is_refused() -> None:
     assert three_to_one.explosive
     with pytest.raises(so.SomersaultError, match="no explosive 2 : 1"):
         st.burst(spin, three_to_one)
+    doll = so.spin("doll_weighted", pose={"shoulder": 1.6}).linear({"shoulder": 0.98})
+    of_another, *_ = doll.resonances(order=3)
+    with pytest.raises(so.SomersaultError, match="of another spin"):
+        st.burst(spin, of_another)
     with pytest.raises(so.SomersaultError, match="order"):
         spin.resonances(order=2)
     with pytest.raises(so.SomersaultError, match="not negative"):

@@ -279,6 +279,8 @@ def _jumping(replay: so.Replay | None = None) -> so.Maneuver:
         (lambda: sensitivity("furrer", ["takeoff.tilt"]), "somersault.Maneuver"),
         (lambda: sensitivity(layout(), ["takeoff.lean"]), "takeoff.lean is no number"),
         (lambda: sensitivity(layout(), []), "name nothing"),
+        (lambda: sensitivity(layout(), ["takeoff.tilt"] * 2), "names takeoff.tilt twice"),
+        (lambda: sensitivity(layout(), ["takeoff.tilt"], ["tilt", "tilt"]), "of names tilt twice"),
         (lambda: sensitivity(layout(), ["takeoff.tilt"], ["lean"]), "'lean' is nothing"),
         (lambda: sensitivity(_noisy(), ["takeoff.noise"]), "which noise is sensed"),
         (lambda: sensitivity(_jumping(), ["joints.shoulder.times.2"]), "jumps at 0.2 s"),

@@ -18,6 +18,7 @@ from contextlib import contextmanager, suppress
 
 _lock = threading.RLock()
 _temporary: set[str] = set()
+_ending = threading.Event()
 _PATIENCE = 0.3  # s for a file to be finished, and again for children to end
 _MOST = 3.0  # s, after which the program ends even if that is not done: a disk hangs, say
 _TO_STOP = tuple(
@@ -103,7 +104,10 @@ def _mask_interrupts(how: str) -> set[int] | None:
 
 def _finish(heeded: Sequence[signal.Signals]) -> None:
     """All is done, and Python puts its things away: its own handlers too, so that a signal would
-    end the process in the middle of that, with another exit code."""
+    end the process in the middle of that, with another exit code. Or all has failed, because an
+    interrupt is just ending what this process waited for; then that goes on."""
+    if _ending.is_set():
+        threading.Event().wait(2 * _MOST)  # the thread that watches ends the process
     for s in heeded:
         signal.signal(s, signal.SIG_IGN)
 
@@ -114,6 +118,7 @@ def _watch(receiving: int, heeded: Sequence[int], last_words: str) -> None:
     while (number := os.read(receiving, 1)[0]) not in heeded:
         pass
     code = 128 + number
+    _ending.set()
     late = threading.Timer(_MOST, os._exit, [code])
     late.daemon = True
     try:

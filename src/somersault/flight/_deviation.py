@@ -20,6 +20,8 @@ from somersault.flight.behaviours import Free, JointTakeoff, Locked, Sprung
 from somersault.model import Joint, pose, spread
 from somersault.stability import Spin, locked_speeds
 
+_NOT_HELD = 1e-9  # a ball's holding torque over Ω² and its inertia that is rounding
+
 
 def deviated_flight(
     spin: Spin,
@@ -66,7 +68,8 @@ def deviated_flight(
     Raises
     ------
     SomersaultError
-        For what does not fit the spin's model.
+        For what does not fit the spin's model, and for a ball that moves and has to be held in this
+        pose: no spring of a ball is pretensioned in a flight.
 
     Examples
     --------
@@ -135,7 +138,10 @@ def _setup(
     k = number(f"stiffness of {joint.name}", springs.get(joint.name, 0.0)) * rate**2 * inertia
     b = number(f"damping of {joint.name}", dampers.get(joint.name, 0.0)) * abs(rate) * inertia
     if joint.kind == "ball":
-        return Locked() if speed in locked else Sprung(stiffness=k, damping=b)
+        if speed in locked:
+            return Locked()
+        _refuse_held(spin, joint, inertia)
+        return Sprung(stiffness=k, damping=b)
     angle = float(moved[spin.model.coordinate_slice(joint.name)][0])
     if joint.name in locked:
         return Locked(angle)
@@ -145,6 +151,16 @@ def _setup(
     if k == 0.0:
         return Free(angle, damping=b)
     return Sprung(angle, stiffness=k, damping=b, rest=at + held / k)
+
+
+def _refuse_held(spin: Spin, ball: Joint, inertia: float) -> None:
+    speeds = spin.model.speeds[spin.model.speed_slice(ball.name)]
+    held = float(np.linalg.norm([spin.holding_torques[speed] for speed in speeds]))
+    if held > _NOT_HELD * inertia:
+        raise SomersaultError(
+            f"ball {ball.name} has to be held in this pose, with {held:.3g} Ω² kg m², and flights "
+            "hold no balls; make three hinges of it, or lock it"
+        )
 
 
 def _attitude(spin: Spin, turn: Array) -> Array:

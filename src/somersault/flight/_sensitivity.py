@@ -75,6 +75,10 @@ def sensitivity(
         raise SomersaultError(
             "with_respect_to and of name nothing; name what changes, and what is looked at"
         )
+    for what, row in (("with_respect_to", names), ("of", looked_at)):
+        for name in row:
+            if row.count(name) > 1:
+                raise SomersaultError(f"{what} names {name} twice; leave one out")
     meant = [targets(batch, name) for name in names]
     varied = tuple(dict.fromkeys(target.name for one in meant for target in one))
     if _NOISE in varied:

@@ -54,8 +54,9 @@ def moving_joints(
         named = [*by_name("joints", joints)] if ranges else [*name_list("joints", joints)]
     meant = spread(model, dict.fromkeys(named, 0.0), mirrored=False)
     for name in meant:
-        if name not in {joint.name for joint in model.joints}:
+        if name in model.speeds and name not in {joint.name for joint in model.joints}:
             raise SomersaultError(f"joint {name} is of a ball, which no plan moves; leave it out")
+        model.joint(name)  # refuses what is none
     chosen = [joint.name for joint in model.joints if joint.name in meant]
     for joint in (model.joint(name) for name in chosen):
         if joint.follows is not None:

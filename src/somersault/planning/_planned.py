@@ -19,7 +19,7 @@ from somersault.planning._starts import searched
 
 _MOST_NODES = 2000
 _MOST_STARTS = 10_000
-_FAR = 1e-2  # rad between plan and flight that is worth a note
+_FAR = 1e-3  # rad between plan and flight that is worth a note
 
 
 def plan(

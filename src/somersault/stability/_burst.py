@@ -22,11 +22,13 @@ from numpy.typing import ArrayLike
 from somersault._core.array import Array
 from somersault._core.checks import instance
 from somersault._core.errors import SomersaultError
-from somersault._core.numbers import floats, number
+from somersault._core.numbers import number
 from somersault.stability._reduced_motion import ReducedMotion, reduced_motion
 from somersault.stability._resonances import Resonance
+from somersault.stability._springs import finite
 from somersault.stability._types import LinearSpin
 
+_SAME = 1e-9  # between roots, in units of Ω
 _STEP = 2e-3  # of differences, rad or so; their error goes with its fourth power
 
 
@@ -66,6 +68,11 @@ class Burst:
         -------
         float
 
+        Raises
+        ------
+        SomersaultError
+            For a negative amplitude.
+
         Examples
         --------
         >>> import somersault as so
@@ -74,7 +81,10 @@ class Burst:
         >>> round(so.stability.burst(doll, two_to_one).width(0.01), 4)
         0.0122
         """
-        return 4 * self.strength * number("amplitude", amplitude)
+        size = number("amplitude", amplitude)
+        if not size >= 0:
+            raise SomersaultError(f"an amplitude is not negative, and this is {size:g}")
+        return 4 * self.strength * size
 
     def turns(self, amplitude: float) -> float:
         """Within how many turns it bursts at exact resonance, the fast mode at rest at first.
@@ -110,7 +120,9 @@ class Burst:
         """The slow mode's amplitude after a takeoff with some tilt and twist.
 
         Joints are at rest, and the angular momentum is along the axis that the body should spin
-        about.
+        about. In a body that is not its own mirror image the same start sets the fast mode going
+        too, of which threshold, width and turns know nothing: it bursts sooner or later than they
+        say.
 
         Parameters
         ----------
@@ -129,7 +141,7 @@ class Burst:
         >>> so.stability.burst(doll, two_to_one).amplitude(tilt=[0.01, 0.02]).round(4)
         array([0.0324, 0.0647])
         """
-        tilt, twist = floats("tilt", tilt), floats("twist", twist)
+        tilt, twist = finite("tilt", tilt), finite("twist", twist)
         return np.asarray(np.abs(self._slow[0] * tilt + self._slow[1] * twist))
 
 
@@ -147,11 +159,13 @@ def burst(spin: LinearSpin, resonance: Resonance) -> Burst:
     Returns
     -------
     Burst
+        What the quadratic terms say of the fast mode at rest. How a burst ends is up to higher
+        terms: a flight may be lost, or come back.
 
     Raises
     ------
     SomersaultError
-        For one that is not an explosive 2 : 1, and for a body with a ball joint.
+        For one that is not an explosive 2 : 1 or of another spin, and for a body with a ball joint.
 
     Examples
     --------
@@ -166,6 +180,11 @@ def burst(spin: LinearSpin, resonance: Resonance) -> Burst:
     instance("a resonance", resonance, Resonance)
     if not resonance.explosive or sorted(map(abs, resonance.counts)) != [1, 2]:
         raise SomersaultError(f"{resonance.words} is no explosive 2 : 1 resonance; take one")
+    own = np.array([mode.root for mode in spin.modes])
+    if any(np.abs(own - mode.root).min() > _SAME for mode in resonance.modes):
+        raise SomersaultError(
+            f"{resonance.words} is a resonance of another spin; take one of this spin's resonances"
+        )
     return two_to_one(reduced_motion(spin), resonance)[0]
 
 

@@ -76,7 +76,9 @@ def _region(
     column = int(np.argmax(inside.sum(0))) if inside.any() else len(x) // 2
     rows = np.flatnonzero(inside[:, column])
     row = rows[len(rows) // 2] if rows.size else len(y) // 2
-    label(axes, x[column], y[row], somewhere if rows.size else nowhere, color, ha="center")
+    along = (x[column] - x[0]) / (x[-1] - x[0])  # words stay within the frame
+    side = "left" if along < 0.25 else "right" if along > 0.75 else "center"
+    label(axes, x[column], y[row], somewhere if rows.size else nowhere, color, ha=side)
 
 
 def root_loci(loci: xr.Dataset) -> Figure:

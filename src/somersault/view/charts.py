@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -101,16 +102,15 @@ def resonance_curves(ax: Axes, chart: xr.Dataset, exchange: bool = True) -> None
         Whether to draw those, too, that only exchange energy between modes.
     """
     y, x = (chart[name].values for name in chart.stable.dims)
-    colors = [VERMILION, ORANGE, PURPLE, BLACK]
-    drawn = 0
+    colors = {True: cycle([VERMILION, BLACK]), False: cycle([ORANGE, PURPLE, GREY])}
     said = False
     for k, name in enumerate(chart.resonance.values.tolist()):
         off, bursts = chart.detuning.values[k], chart.explosive.values[k]
         cubic = int(chart.order[k]) == 3
-        color, way, width = colors[drawn % 4], "-" if cubic else "--", 2.2 if cubic else 1.2
-        if _zeros(ax, x, y, np.where(bursts, off, np.nan), color, way, width):
+        way, width = ("-", 2.2) if cubic else ("--", 1.2)
+        where = np.where(bursts, off, np.nan)
+        if _crosses(where) and _zeros(ax, x, y, where, color := next(colors[cubic]), way, width):
             ax.plot([], [], way, color=color, lw=width, label=name)
-            drawn += 1
         if exchange and _zeros(ax, x, y, np.where(bursts, np.nan, off), GREY, ":", 0.9):
             ax.plot([], [], ":", color=GREY, lw=0.9, label=None if said else "exchange only")
             said = True
@@ -118,11 +118,15 @@ def resonance_curves(ax: Axes, chart: xr.Dataset, exchange: bool = True) -> None
 
 def _zeros(ax: Axes, x: Array, y: Array, off: Array, color: str, way: str, width: float) -> bool:
     """The curves on which a quantity (y, x) is zero; False if there are none."""
-    known = off[np.isfinite(off)]
-    if not known.size or not known.min() <= 0 <= known.max():
+    if not _crosses(off):
         return False
     made = ax.contour(x, y, off, [0.0], colors=[color], linewidths=width, linestyles=way, zorder=3)
     return any(np.size(path.vertices) for path in made.get_paths())
+
+
+def _crosses(off: Array) -> bool:
+    known = off[np.isfinite(off)]
+    return bool(known.size and known.min() <= 0 <= known.max())
 
 
 def locus(
