@@ -29,10 +29,11 @@ class Mean(Averaged, kind="mean"):
         return self.counted(values, failed).mean(-1)
 
     def interval(self, values: Array, failed: Array) -> tuple[float, float]:
-        counted = self.counted(values, failed)
-        mean = float(counted.mean())
-        half = _OF_NORMAL * float(counted.std(ddof=1)) / np.sqrt(len(counted))
-        return mean - half, mean + half
+        starts = np.atleast_2d(self.counted(values, failed)).mean(0)
+        mean = float(starts.mean())
+        half = _OF_NORMAL * float(starts.std(ddof=1)) / np.sqrt(len(starts))
+        low = mean - half
+        return low if self.largest else max(low, 0.0), mean + half
 
     @property
     def words(self) -> str:

@@ -13,6 +13,9 @@ from somersault._core.checks import text, truth
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 
+CONFIDENCE = 0.95
+"""Of intervals."""
+
 
 @dataclass(frozen=True)
 class Objective(ABC):
@@ -71,8 +74,9 @@ class Objective(ABC):
 
         Parameters
         ----------
-        values : ndarray, (N,)
-        failed : ndarray of bool, (N,)
+        values : ndarray, (N,) or (cases, N)
+            Of N starts; runs of several cases from the same start are not independent.
+        failed : ndarray of bool
 
         Returns
         -------

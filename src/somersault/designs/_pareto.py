@@ -74,10 +74,12 @@ class TradeOff:
         import xarray as xr
 
         rows = {name: x[places] for name, x in self.rows.items()}
-        failed = self.held_out.failed(rows[ENDED])
         aims = self.trial.objectives
         intervals = [
-            [one.interval(x, lost) for x, lost in zip(rows[one.quantity], failed, strict=True)]
+            [
+                self.held_out.interval(one, {name: x[k] for name, x in rows.items()})
+                for k in range(len(rows[ENDED]))
+            ]
             for one in aims
         ]
         low, high = np.moveaxis(np.array(intervals, float), -1, 0).swapaxes(1, 2)

@@ -10,7 +10,8 @@ from scipy import special
 from somersault._core.array import Array
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
-from somersault.designs._objective import Averaged, Objective
+from somersault.designs._clusters import effective
+from somersault.designs._objective import CONFIDENCE, Averaged, Objective
 
 
 @dataclass(frozen=True)
@@ -44,13 +45,17 @@ class Quantile(Averaged, kind="quantile"):
 
     def interval(self, values: Array, failed: Array) -> tuple[float, float]:
         """Between two of the ordered values, whichever distribution they have: the number of those
-        below the quantile is binomial."""
-        ordered = np.sort(self.counted(values, failed))
-        n = len(ordered)
+        below the quantile is binomial, of so many as are independent (Woodruff 1952,
+        doi:10.1080/01621459.1952.10483443)."""
+        counted = np.atleast_2d(self.counted(values, failed))
+        ordered = np.sort(counted, axis=None)
+        n = round(effective(counted <= np.quantile(counted, self.q)))
         below = special.bdtr(np.arange(n + 1), n, self.q)
-        low = int(np.searchsorted(below, 0.025))
-        high = int(np.searchsorted(below, 0.975)) + 1
-        return float(ordered[max(low - 1, 0)]), float(ordered[min(high - 1, n - 1)])
+        rest = (1 - CONFIDENCE) / 2
+        low = max(int(np.searchsorted(below, rest)) - 1, 0)
+        high = min(int(np.searchsorted(below, 1 - rest)), n - 1)
+        runs = len(ordered)  # some of them stand for each that is independent
+        return float(ordered[low * runs // n]), float(ordered[-(-(high + 1) * runs // n) - 1])
 
     @property
     def words(self) -> str:

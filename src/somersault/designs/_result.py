@@ -90,8 +90,7 @@ class Design:
     @property
     def interval(self) -> tuple[float, float]:
         """The 95 % confidence interval of `figure`."""
-        failed = self.held_out.failed(self.rows[ENDED])
-        return self.trial.objective.interval(self.rows[self.trial.objective.quantity][1], failed[1])
+        return self.held_out.interval(self.trial.objective, {n: x[1] for n, x in self.rows.items()})
 
     @property
     def cases(self) -> tuple[Candidates, ...]:

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.intervals import of_share
 from somersault._core.numbers import number
-from somersault.designs._objective import Objective
-from somersault.ensembles import fraction
+from somersault.designs._clusters import effective
+from somersault.designs._objective import CONFIDENCE, Objective
 
 
 @dataclass(frozen=True)
@@ -62,10 +63,10 @@ class Share(Objective, kind="share"):
         return True
 
     def interval(self, values: Array, failed: Array) -> tuple[float, float]:
-        import xarray as xr
-
-        share = fraction(xr.DataArray(self.good(values, failed), dims="sample"))
-        return float(share["low"]), float(share["high"])
+        good = np.atleast_2d(self.good(values, failed))
+        count = np.asarray(effective(good))
+        low, high = of_share(good.mean() * count, count, CONFIDENCE)
+        return float(low), float(high)
 
     @property
     def words(self) -> str:

@@ -167,6 +167,12 @@ class Trial:
         figures = [one.figures(rows[one.quantity], failed) for one in self.objectives]
         return np.stack(figures, 1)
 
+    def interval(self, objective: Objective, runs: Mapping[str, Array]) -> tuple[float, float]:
+        """The confidence interval of one candidate's figure, of its runs (cases · N,): what is run
+        from the same start, all cases and points of a grid, hangs together."""
+        values, failed = runs[objective.quantity], self.failed(runs[ENDED])
+        return objective.interval(values.reshape(-1, self.size), failed.reshape(-1, self.size))
+
     def outcome(self, table: Array, **where: Any) -> Outcome:
         """What candidates (P, chosen) come to, by the objective."""
         every = self.traded(table, **where)

@@ -7,11 +7,11 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy import special
 
 from somersault._core.array import Array
 from somersault._core.checks import name_list, shown
 from somersault._core.errors import SomersaultError
+from somersault._core.intervals import of_share
 from somersault._core.numbers import number, numbers
 from somersault.ensembles._chunks import chunked
 from somersault.ensembles._endings import (
@@ -126,7 +126,7 @@ def share(
     dims = _over(counted, over)
     n = counted.sum(dims)
     hits = (good & counted).sum(dims)
-    low, high = (hits.copy(data=x) for x in _interval(hits.values, n.values, confidence))
+    low, high = (hits.copy(data=x) for x in of_share(hits.values, n.values, confidence))
     return xr.Dataset(
         {
             "fraction": (hits / n).assign_attrs(units="1"),
@@ -142,14 +142,6 @@ def check_confidence(confidence: float) -> None:
     """SomersaultError unless it lies between 0 and 1."""
     if not 0 < number("confidence", confidence) < 1:
         raise SomersaultError(f"confidence must be between 0 and 1, and is {confidence}")
-
-
-def _interval(hits: Array, count: Array, confidence: float) -> tuple[Array, Array]:
-    """Both ends of the Clopper–Pearson interval of so many hits in so many."""
-    rest = (1 - confidence) / 2
-    low = np.where(hits > 0, special.betaincinv(hits, count - hits + 1, rest), 0.0)
-    high = np.where(hits < count, special.betaincinv(hits + 1, count - hits, 1 - rest), 1.0)
-    return low, high
 
 
 def quantiles(
@@ -304,7 +296,7 @@ def _landed_within(data: xr.Dataset, most: float, tolerance: float) -> dict[str,
 
 def _share(hits: int, counted: int) -> dict[str, float]:
     """A share with its confidence interval."""
-    low, high = _interval(np.array(hits), np.array(counted), _CONFIDENCE)
+    low, high = of_share(np.array(hits), np.array(counted), _CONFIDENCE)
     row = (hits / counted, float(low), float(high)) if counted else (np.nan,) * 3
     return dict(zip(("fraction", "low", "high"), row, strict=True))
 
