@@ -1075,7 +1075,7 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     ),
     "designs.Limit": lambda: (
         lambda **given: _designed(limits=[designs.Limit(**given)]),
-        {"quantity": "twist", "most": 3.0, "share": 0.5, "unperturbed": False},
+        {"quantity": "twist", "most": 3.0, "least": -3.0, "share": 0.5, "unperturbed": False},
     ),
     "designs.Mean": lambda: (
         lambda **given: _designed(objective=designs.Mean(**given)),

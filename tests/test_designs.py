@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import pickle
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -96,6 +96,35 @@ def test_a_limit_that_binds_is_kept_to() -> None:
     assert design.best["x"] == pytest.approx(1.5, abs=1e-3)
     assert design.best["x"] <= 1.5
     assert design.figure == pytest.approx(0.25 + 0.25, abs=0.03)
+
+
+def test_a_range_is_kept_to_from_below_and_above() -> None:
+    """`share_of_x` is x / 4, and negative for negative x; the best of the bowl is at x = 2."""
+    wide = {"x": Choose(sets="x", between=(-5.0, 5.0))}
+    above = found(wide, limits=[Limit("share_of_x", least=0.75)])
+    assert above.best["x"] == pytest.approx(3.0, abs=0.002)
+    below = found(wide, limits=[Limit("share_of_x", least=-0.75, most=-0.25)])
+    assert below.best["x"] == pytest.approx(-1.0, abs=0.002)
+    kept = Limit("share_of_x", least=-2.0, most=1.0, share=0.5)
+    off = kept.beyond(np.array([[-1.5, 9.0], [1.5, 9.0], [-3.0, 0.0]]), np.zeros((3, 2), bool))
+    assert off.tolist() == [0.0, 0.25, 0.0]
+    every = replace(kept, share=1.0)
+    assert every.beyond(np.array([[-3.0, 0.0]]), np.zeros((1, 2), bool)).tolist() == [0.5]
+    assert every.beyond(np.array([[np.nan, 0.0]]), np.zeros((1, 2), bool))[0] > 1
+
+
+def test_the_worst_start_is_the_one_that_the_objective_likes_least() -> None:
+    """The error is (x − 2 − start)², and `share_of_x` x / 4 of x with the scatter."""
+    scatter = {"off": so.Vary(adds_to="x", normal=[0.0, 0.5])}
+    for objective, of in (
+        (Share("share_of_x", least=0.5), np.argmin), (Share("share_of_x", most=2.0), np.argmax),
+        (Share("share_of_x", least=-9.0, most=1.0), np.argmax),
+        (Mean("share_of_x", largest=True), np.argmin), (Mean("share_of_x"), np.argmax),
+    ):  # fmt: skip
+        choose = {"x": Choose(sets="x", between=(4.0, 5.0))}
+        design = so.design(Bowl(), choose, scatter, objective, size=16, evaluations=10, held_out=64)
+        off = design.dataset["off"].values
+        assert design.worst_start == {"off": off[of(off)]}
 
 
 def test_a_share_is_largest_where_the_distribution_says() -> None:
@@ -267,6 +296,13 @@ def test_a_design_can_be_sent_to_another_process() -> None:
         ({"objective": Mean("landing")}, "landing is not reported"),
         ({"objective": "error"}, "give designs.Share"),
         ({"objective": Quantile("error", q=1.5)}, "between 0 and 1"),
+        ({"objective": Mean("error", counts_as=-1.0)}, "counts_as is -1, and sizes"),
+        ({"objective": Share("error")}, "objective has no bounds"),
+        ({"objective": Share("error", most=-0.1)}, "objective.most must be positive"),
+        ({"objective": Share("error", most=0.1, least=0.5)}, "least is 0.5, and must be below"),
+        ({"objective": Share("error", most=1.0), "of": Bowl(fails_above=-9.0)}, "all 4,000 held"),
+        ({"limits": [Limit("torque")]}, "limit has no bounds"),
+        ({"limits": [Limit("torque", most=1.0, least=2.0)]}, "least is 2, and must be below"),
         ({"limits": [Limit("torque", most=0.0)]}, "must be positive"),
         ({"limits": [Limit("torque", most=1e-9)]}, "keeps to the limits"),
         ({"of": Bowl(fails_above=0.5)}, "say what they count as"),

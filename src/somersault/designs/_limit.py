@@ -10,21 +10,24 @@ from somersault._core.array import Array
 from somersault._core.checks import instance, text, truth
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
+from somersault.designs._bounds import check_bounds, outside, scale
 
 _MOST_BEYOND = 1e3
 
 
 @dataclass(frozen=True)
 class Limit:
-    """A bound on a quantity that is reported, as a joint's greatest torque.
+    """Bounds on a quantity that is reported, as a joint's greatest torque.
 
     Parameters
     ----------
     quantity : str
         What is reported of each run, as "greatest_left_elbow_torque"; a * stands for anything, so
         that "*elbow_torque" means both extremes of both.
-    most : float
-        What |quantity| may be at most.
+    most, least : float, optional
+        The bounds. With `most` alone |quantity| is at most that, with `least` alone the quantity at
+        least that, and with both it is from `least` to `most`: "*_left_hip" from -0.3 to 2.5 is
+        the range of a joint whose extremes are reported.
     share : float
         Of the runs, in how many at least; those that failed are left out.
     unperturbed : bool
@@ -41,7 +44,8 @@ class Limit:
     """
 
     quantity: str
-    most: float
+    most: float | None = None
+    least: float | None = None
     share: float = 1.0
     unperturbed: bool = False
 
@@ -55,19 +59,18 @@ class Limit:
         Raises
         ------
         SomersaultError
-            Unless its numbers are positive, and the share at most 1.
+            Without bounds, for bounds that nothing is within, and for a share that is none.
         """
         instance("a limit", self, Limit)
         text("limit.quantity", self.quantity)
-        if number("limit.most", self.most) <= 0:
-            raise SomersaultError(f"limit.most must be positive, and is {self.most:g}")
+        check_bounds("limit", self.most, self.least)
         truth("limit.unperturbed", self.unperturbed)
         if not 0 < number("limit.share", self.share) <= 1:
             raise SomersaultError(f"limit.share must be above 0 and at most 1, not {self.share:g}")
         return self
 
     def beyond(self, values: Array, failed: Array) -> Array:
-        """By how much of the limit candidates are beyond it, 0 where they keep to it.
+        """By how much of the larger bound candidates are beyond, 0 where they keep to it.
 
         Parameters
         ----------
@@ -77,6 +80,7 @@ class Limit:
         -------
         ndarray, (P,)
         """
-        sizes = np.where(failed, np.inf if self.unperturbed else 0.0, np.abs(values))
-        least = np.quantile(sizes, self.share, axis=-1, method="inverted_cdf")
-        return np.clip(least / self.most - 1, 0.0, _MOST_BEYOND)
+        off = outside(values, self.most, self.least) / scale(self.most, self.least)
+        off = np.clip(np.nan_to_num(off, nan=_MOST_BEYOND), 0.0, _MOST_BEYOND)
+        off = np.where(failed, _MOST_BEYOND if self.unperturbed else 0.0, off)
+        return np.quantile(off, self.share, axis=-1, method="inverted_cdf")

@@ -83,6 +83,19 @@ class Objective(ABC):
         low, high : float
         """
 
+    @abstractmethod
+    def badness(self, values: Array) -> Array:
+        """How bad runs that did not fail are: the worse, the larger.
+
+        Parameters
+        ----------
+        values : ndarray
+
+        Returns
+        -------
+        ndarray
+        """
+
     @property
     @abstractmethod
     def words(self) -> str:
@@ -122,11 +135,19 @@ class Averaged(Objective, kind=""):
         truth("objective.largest", self.largest)
         if self.counts_as is not None:
             number("objective.counts_as", self.counts_as)
+            if self.counts_as < 0 and not self.largest:
+                raise SomersaultError(
+                    f"objective.counts_as is {self.counts_as:g}, and sizes are not below 0; say "
+                    "what a failure counts as, something large"
+                )
         return super().checked()
 
     @property
     def rises(self) -> bool:
         return self.largest
+
+    def badness(self, values: Array) -> Array:
+        return -values if self.largest else np.abs(values)
 
     def counted(self, values: Array, failed: Array) -> Array:
         """The values as they count.

@@ -157,12 +157,9 @@ class Design:
     def worst_start(self) -> dict[str, float]:
         """The held-out start from which the best candidate does worst, by what varies."""
         objective = self.trial.objective
-        values = self.rows[objective.quantity][1].astype(float)
-        size = (
-            -values if objective.rises and getattr(objective, "largest", False) else np.abs(values)
-        )
-        size = np.where(self.held_out.failed(self.rows[ENDED])[1], np.inf, size)
-        at = int(np.nanargmax(size))
+        bad = objective.badness(self.rows[objective.quantity][1].astype(float))
+        lost = self.held_out.failed(self.rows[ENDED])[1] | np.isnan(bad)
+        at = int(np.argmax(np.where(lost, np.inf, bad)))
         data = self.dataset
         return {str(n): float(data[n][at]) for n in data.coords if n != CANDIDATE}
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from somersault._core.array import Array
 from somersault._core.intervals import of_share
-from somersault._core.numbers import number
+from somersault.designs._bounds import bounds_in_words, check_bounds, outside
 from somersault.designs._clusters import effective
 from somersault.designs._objective import CONFIDENCE, Objective
 
@@ -20,8 +20,9 @@ class Share(Objective, kind="share"):
     Parameters
     ----------
     quantity : str
-    most, least : float
-        Bounds of what is good: |quantity| is at most `most`, and the quantity at least `least`.
+    most, least : float, optional
+        Bounds of what is good. With `most` alone |quantity| is at most that, with `least` alone the
+        quantity at least that, and with both it is from `least` to `most`.
 
     Examples
     --------
@@ -32,14 +33,11 @@ class Share(Objective, kind="share"):
     array([0.5])
     """
 
-    most: float = np.inf
-    least: float = -np.inf
+    most: float | None = None
+    least: float | None = None
 
     def checked(self) -> Objective:
-        for name in ("most", "least"):
-            bound = getattr(self, name)
-            if not (isinstance(bound, float) and np.isinf(bound)):
-                number(f"objective.{name}", bound)
+        check_bounds("objective", self.most, self.least)
         return super().checked()
 
     def good(self, values: Array, failed: Array) -> Array:
@@ -53,7 +51,10 @@ class Share(Objective, kind="share"):
         -------
         ndarray of bool
         """
-        return (np.abs(values) <= self.most) & (values >= self.least) & ~failed
+        return (outside(values, self.most, self.least) <= 0) & ~failed
+
+    def badness(self, values: Array) -> Array:
+        return outside(values, self.most, self.least)
 
     def figures(self, values: Array, failed: Array) -> Array:
         return self.good(values, failed).mean(-1)
@@ -70,6 +71,4 @@ class Share(Objective, kind="share"):
 
     @property
     def words(self) -> str:
-        bounds = [] if np.isinf(self.most) else [f"within {self.most:g}"]
-        bounds += [] if np.isinf(self.least) else [f"at least {self.least:g}"]
-        return f"share with {self.quantity} {' and '.join(bounds)}"
+        return f"share with {self.quantity} {bounds_in_words(self.most, self.least)}"

@@ -63,11 +63,17 @@ class Study:
         """Candidates of a table on starts of their own, with a note of the last one's failures."""
         fresh = replace(self.trial, size=self.much.held_out, seed=self.much.seed + 1)
         rows = fresh.run(table, **self.where)
-        lost = int(fresh.failed(rows[ENDED])[-1].sum())
+        failed, called = fresh.failed(rows[ENDED]), fresh.simulation.endings.called
+        if failed[1:].all():
+            raise SomersaultError(
+                f"all {failed[-1].size:,} held-out {called} of the best failed, so nothing is "
+                "known to be good; choose between other bounds, or start elsewhere"
+            )
+        lost = int(failed[-1].sum())
         if lost:
             note(
-                f"{lost:,} of {self.much.held_out:,} held-out {fresh.simulation.endings.called} of "
-                "the best failed, and count as such"
+                f"{lost:,} of {failed[-1].size:,} held-out {called} of the best failed, and count "
+                "as such"
             )
         return fresh, rows
 
