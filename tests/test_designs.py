@@ -225,17 +225,6 @@ def test_numpys_own_random_numbers_are_left_alone() -> None:
     assert np.random.rand() == first
 
 
-def test_processes_find_the_same(tmp_path: Path) -> None:
-    def one(**where: Any) -> Any:
-        layout = so.Maneuver("furrer", so.Takeoff(spin=8.64, joints=ARMS), 0.3)
-        return so.design(
-            layout, STIFFNESS, TWISTED, TWIST, size=8, evaluations=8, held_out=8, **where
-        )
-
-    here, there = one(), one(workers=1)
-    assert here.table.tobytes() == there.table.tobytes()
-
-
 # --------------------------------------------------------------------------------- bodies
 
 ARMS = {"shoulder": so.JointTakeoff.sprung(angle=1.3, K=0.2, hold=True)}

@@ -162,6 +162,7 @@ NOT_FOR_USERS = {
             "Machine",
             "Run",
             "Runs.carried_out",
+            "workers_kept",
             "Runs.run",
             "Runs.sound",
             "Runs.with_varied",

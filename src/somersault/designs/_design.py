@@ -20,7 +20,7 @@ from somersault.designs._result import Design
 from somersault.designs._search import search
 from somersault.designs._study import EVALUATIONS, HELD_OUT, SIZE, WIDTH, Size, study
 from somersault.designs._trial import Outcome
-from somersault.ensembles import Vary
+from somersault.ensembles import Vary, workers_kept
 from somersault.flight import Maneuver
 from somersault.simulation import Simulation
 
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from distributed.security import Security
 
 
+@workers_kept()
 def design(
     what: Maneuver | Simulation | Sequence[Any] | Callable[..., Any],
     choose: Mapping[str, Choose],

@@ -19,7 +19,7 @@ from somersault.designs._objective import Objective
 from somersault.designs._pareto import TradeOff
 from somersault.designs._study import EVALUATIONS, HELD_OUT, SIZE, Size, study
 from somersault.designs._trial import Outcome
-from somersault.ensembles import Vary
+from somersault.ensembles import Vary, workers_kept
 from somersault.flight import Maneuver
 from somersault.simulation import Simulation
 
@@ -30,6 +30,7 @@ POINTS = 16
 _MOST_POINTS = 10_000
 
 
+@workers_kept()
 def trade_off(
     what: Maneuver | Simulation | Sequence[Any] | Callable[..., Any],
     choose: Mapping[str, Choose],

@@ -4,6 +4,7 @@ what they add up to."""
 from somersault.ensembles._carried_out import carried_out
 from somersault.ensembles._endings import ended_by, failed
 from somersault.ensembles._ensemble import ensemble
+from somersault.ensembles._kept import workers_kept
 from somersault.ensembles._landings import landing_derivatives, landing_map
 from somersault.ensembles._plan import Plan, plan
 from somersault.ensembles._result import Ensemble, check_out
@@ -36,4 +37,5 @@ __all__ = [
     "summary",
     "tls_files",
     "within",
+    "workers_kept",
 ]

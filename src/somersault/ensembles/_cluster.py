@@ -13,7 +13,7 @@ import signal
 from collections.abc import Iterator, Mapping
 from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager, suppress
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,6 +26,7 @@ from somersault._core.notes import note
 from somersault.engine import cores, processor
 from somersault.ensembles import _run, _store
 from somersault.ensembles._chunks import Chunks
+from somersault.ensembles._kept import workers_kept
 from somersault.ensembles._plan import Plan
 from somersault.ensembles._scheduler import connected, note_open_door, unlogged
 from somersault.ensembles._versions import versions
@@ -46,37 +47,57 @@ def on_cluster(
     security: Security | None,
 ) -> None:  # fmt: skip
     """Run the chunks that are `left` on processes of this machine, or on those of a scheduler."""
+    with workers_kept() as kept:
+        if scheduler is not None:
+            found = kept.client((scheduler, id(security)), partial(_found, scheduler, security))
+            _carry(found, plan, chunks, left, put, advance, file, threads, scheduler)
+            return
+        assert workers is not None
+        each = threads or max(1, cores() // workers)
+        begun = kept.client(workers, partial(_begun, workers))
+        _carry(begun, plan, chunks, left, put, advance, file, each, "this machine")
+
+
+def _found(scheduler: str, security: Security | None, open_now: ExitStack) -> Client:
+    """A connection to a scheduler."""
+    _quiet(open_now)
+    client = open_now.enter_context(connected(scheduler, security))
+    note_open_door(scheduler)
+    return client
+
+
+def _begun(workers: int, open_now: ExitStack) -> Client:
+    """A connection to so many processes of this machine, which end with it."""
     import dask
     from distributed import Client, LocalCluster
 
-    quiet = {
+    _quiet(open_now)
+    folder = open_now.enter_context(temporary_folder())
+    # The scheduler's own files too, for which `LocalCluster` takes no folder.
+    open_now.enter_context(dask.config.set({"temporary-directory": str(folder)}))
+    with children_unaware():  # of interrupts: the program ends them
+        cluster = LocalCluster(
+            n_workers=workers, threads_per_worker=1, processes=True, host="127.0.0.1",
+            dashboard_address=None, silence_logs="CRITICAL", local_directory=str(folder),
+            preload="somersault.ensembles._worker",
+        )  # fmt: skip
+        open_now.enter_context(cluster)
+        open_now.enter_context(_ended_at_once(cluster))
+    return open_now.enter_context(Client(cluster))
+
+
+def _quiet(open_now: ExitStack) -> None:
+    """dask's settings while a connection is open."""
+    import dask
+
+    settings = {
         "distributed.scheduler.allowed-failures": _DEATHS,
         "distributed.comm.retry.count": 0,
         # dask would have workers give memory back after every array, and ask for it again.
         "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": _TRIM_BYTES,
     }
-    with dask.config.set(quiet), unlogged():
-        if scheduler is not None:
-            with connected(scheduler, security) as client:
-                note_open_door(scheduler)
-                _carry(client, plan, chunks, left, put, advance, file, threads, scheduler)
-            return
-        assert workers is not None
-        each = threads or max(1, cores() // workers)
-        with ExitStack() as open_now:
-            folder = open_now.enter_context(temporary_folder())
-            # The scheduler's own files too, for which `LocalCluster` takes no folder.
-            open_now.enter_context(dask.config.set({"temporary-directory": str(folder)}))
-            with children_unaware():  # of interrupts: the program ends them
-                cluster = LocalCluster(
-                    n_workers=workers, threads_per_worker=1, processes=True, host="127.0.0.1",
-                    dashboard_address=None, silence_logs="CRITICAL", local_directory=str(folder),
-                    preload="somersault.ensembles._worker",
-                )  # fmt: skip
-                open_now.enter_context(cluster)
-                open_now.enter_context(_ended_at_once(cluster))
-            client = open_now.enter_context(Client(cluster))
-            _carry(client, plan, chunks, left, put, advance, file, each, "this machine")
+    open_now.enter_context(dask.config.set(settings))
+    open_now.enter_context(unlogged())
 
 
 @contextmanager
