@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from pathlib import Path
 from typing import Any
 
 import distributed
@@ -70,3 +73,29 @@ def test_an_interrupt_leaves_no_processes(
         so.design(LAYOUT, STIFFNESS, TWISTED, TWIST, workers=1, **MUCH)
     assert len(begun) == 1
     assert not workers()
+
+
+SCRIPT = """
+import somersault as so
+runs = so.flight.flights("furrer", so.Takeoff(spin=8.64), 0.1)
+print(so.ensemble(runs, workers=1).dataset.sizes["sample"])
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("guarded", [False, True])
+def test_a_script_that_is_read_by_its_own_workers_gets_a_sentence(
+    guarded: bool, tmp_path: Path
+) -> None:
+    script = tmp_path / "script.py"
+    inner = SCRIPT.replace("\n", "\n    ")
+    script.write_text(f'if __name__ == "__main__":{inner}\n' if guarded else SCRIPT)
+    told = subprocess.run([sys.executable, script], capture_output=True, encoding="utf-8")
+    if guarded:
+        assert (told.returncode, told.stdout) == (0, "1\n")
+        return
+    assert told.returncode == 1
+    assert told.stderr.count("Traceback") == 1
+    last = told.stderr.strip().splitlines()[-1]
+    assert last.startswith("somersault._core.errors.SomersaultError: ")
+    assert "below if __name__ == '__main__':" in last

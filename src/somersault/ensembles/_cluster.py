@@ -10,11 +10,13 @@ from __future__ import annotations
 import asyncio
 import os
 import signal
+import sys
 from collections.abc import Iterator, Mapping
 from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager, suppress
 from functools import lru_cache, partial
 from itertools import islice
+from multiprocessing import current_process
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -71,16 +73,25 @@ def _begun(workers: int, open_now: ExitStack) -> Client:
     import dask
     from distributed import Client, LocalCluster
 
+    if getattr(current_process(), "_inheriting", False):
+        sys.exit()  # a process that reads the script it is begun by: the one that began it says why
     _quiet(open_now)
     folder = open_now.enter_context(temporary_folder())
     # The scheduler's own files too, for which `LocalCluster` takes no folder.
     open_now.enter_context(dask.config.set({"temporary-directory": str(folder)}))
     with children_unaware():  # of interrupts: the program ends them
-        cluster = LocalCluster(
-            n_workers=workers, threads_per_worker=1, processes=True, host="127.0.0.1",
-            dashboard_address=None, silence_logs="CRITICAL", local_directory=str(folder),
-            preload="somersault.ensembles._worker",
-        )  # fmt: skip
+        try:
+            cluster = LocalCluster(
+                n_workers=workers, threads_per_worker=1, processes=True, host="127.0.0.1",
+                dashboard_address=None, silence_logs="CRITICAL", local_directory=str(folder),
+                preload="somersault.ensembles._worker",
+            )  # fmt: skip
+        except RuntimeError:
+            raise SomersaultError(
+                "the processes of the workers ended as soon as they had begun: each reads the "
+                "script first, which must begin workers only where it is run itself, below "
+                "if __name__ == '__main__':"
+            ) from None
         open_now.enter_context(cluster)
         open_now.enter_context(_ended_at_once(cluster))
     return open_now.enter_context(Client(cluster))
