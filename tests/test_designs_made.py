@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,10 @@ class Moved(Bowl):
     """The bowl with its bottom `by` further to the right."""
 
     by: float = 0.0
+
+    @property
+    def specification(self) -> Mapping[str, Any]:
+        return {**super().specification, "by": self.by}
 
     def run(self, values: Numbers, count: int) -> Mapping[str, np.ndarray]:
         return super().run({**values, ("start",): values["start",] + self.by}, count)
@@ -144,5 +149,52 @@ def test_a_search_of_made_candidates_goes_on_where_it_stopped(tmp_path: Any) -> 
     (tmp_path / "design.json").write_text(json.dumps(kept))
     again = found(choose, of=made, limits=limits, out=tmp_path, evaluations=60)
     assert again.table.tobytes() == whole.table.tobytes()
+
+
+def test_functions_are_told_apart_by_what_they_make(tmp_path: Any) -> None:
+    """All of them make the same where the search begins, and have one name."""
+
+    def functions() -> Any:
+        def made(by: float, sign: float = 1.0) -> Bowl:
+            return Moved(by=by if by > 0 else sign * by)
+
+        return made
+
+    given: dict[str, Any] = {
+        "choose": {"x": BOTH["x"], "by": Choose(between=(-0.5, 0.75))}, "out": tmp_path,
+        "evaluations": 12,
+    }  # fmt: skip
+    first = found(of=functions(), **given)
+    for same in (functions(), lambda by: Moved(by=by), partial(functions(), sign=1.0)):
+        assert found(of=same, **given).table.tobytes() == first.table.tobytes()
+
+    def edited(by: float) -> Bowl:
+        return Moved(by=abs(by))
+
+    def lost(by: float) -> Bowl:
+        if by <= 0:
+            raise SomersaultError("too little")
+        return Moved(by=by)
+
+    for other in (partial(functions(), sign=-1.0), edited, lost):
+        other.__qualname__ = functions().__qualname__
+        with pytest.raises(SomersaultError, match="holds another design"):
+            found(of=other, **given)
+
+
+def test_a_motion_with_another_tape_is_another_design(tmp_path: Any) -> None:
+    """Two motions that begin and end alike, by another way."""
+
+    def made(time: float, late: float = 0.0) -> Any:
+        soft = raised(0.5, time + late * (time - 0.2)).compliant(20.0, pose={"shoulder": 1.4})
+        return so.flight.flights(soft.model, soft.takeoff, soft.duration, report=["twist"])
+
+    def searched(of: Any) -> Any:
+        return so.design(
+            of, {"time": Choose(between=(0.1, 0.3))}, TWISTED, Mean("twist", counts_as=3.0),
+            size=4, evaluations=4, held_out=4, out=tmp_path,
+        )  # fmt: skip
+
+    assert searched(made).table.tobytes() == searched(partial(made)).table.tobytes()
     with pytest.raises(SomersaultError, match="holds another design"):
-        found(choose, of=lambda by: Moved(by=by), limits=limits, out=tmp_path, evaluations=60)
+        searched(partial(made, late=0.1))

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import hashlib
 import inspect
+import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from somersault._core.array import Array
 from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError
-from somersault.designs._choose import Choose
+from somersault.designs._choose import Choose, table_of
 from somersault.designs._source import Group, Source
+from somersault.simulation import Simulation
+
+_GOLDEN = 0.5 * (5**0.5 - 1)  # whose multiples, without the whole numbers, are all over 0 to 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,17 +30,26 @@ class Made(Source):
 
     @property
     def specification(self) -> Mapping[str, Any]:
-        return {"made_by": getattr(self.function, "__qualname__", type(self.function).__name__)}
+        """What the function makes at two points: functions are told apart by what they do."""
+        chosen = np.arange(1, len(self.chosen) + 1)
+        parts = np.stack([_GOLDEN * chosen % 1, 1 - _GOLDEN * chosen % 1])
+        made = [self._cases(row) for row in table_of(self.chosen, parts)]
+        plain = json.dumps([[case.specification for case in cases] for cases in made])
+        return {"made": hashlib.sha256(plain.encode()).hexdigest()}
 
     def candidates(self, table: Array) -> list[Group]:
         return [self._made(row) for row in table]
 
     def _made(self, row: Array) -> Group:
+        cases = self._cases(row)
+        return self.group(cases, row[None]) if cases else Group(1, ())
+
+    def _cases(self, row: Array) -> tuple[Simulation, ...]:
+        """What the function makes for a candidate; nothing where it says that it cannot be."""
         try:
-            cases = self.read(self.function(**arguments(self.chosen, row)))
+            return self.read(self.function(**arguments(self.chosen, row)))
         except SomersaultError:
-            return Group(1, ())
-        return self.group(cases, row[None])
+            return ()
 
     def of(self, what: Any) -> Source:
         if not callable(what):
