@@ -314,3 +314,33 @@ def test_a_scatter_of_nothing_is_refused() -> None:
         so.design(Bowl(), BOTH, {}, ERROR)
     with pytest.raises(SomersaultError, match="rename it"):
         so.design(Bowl(), BOTH, {"candidate": SCATTER["off"]}, ERROR)
+    grid = {"off": so.Vary(sets="start", values=[-1.0, 0.0, 1.0])}
+    with pytest.raises(SomersaultError, match="a grid of values has no other starts"):
+        so.design(Bowl(), BOTH, grid, ERROR)
+
+
+@pytest.mark.parametrize("name", ["ended", "figure", "sample", "", "x y"])
+def test_a_name_that_maps_and_rankings_could_not_use_is_refused_at_once(name: str) -> None:
+    with pytest.raises(SomersaultError, match=f"choose.{name!r} is no name|choose.{name}: that"):
+        found({name: BOTH["x"]}, evaluations=20)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"size": 1}, "size must be a whole number from 2"),
+        ({"vary": {}}, "nothing is scattered"),
+        ({"vary": {"q": so.Vary(adds_to="x", values=[0.0, 1.0])}}, "a grid of values"),
+        ({"vary": {"q": so.Vary(sets="x", normal=[0.0, 1.0])}}, "a number that the design chooses"),
+        ({"vary": {"q": 3}}, "vary.q must be"),
+        ({"seed": -1}, "seed"),
+        ({"sequence": "odd"}, "sequence"),
+        ({"simulation": 3}, "nothing that can be run"),
+        ({"simulation": []}, "nothing is run"),
+    ],
+)
+@pytest.mark.filterwarnings("error")
+def test_other_starts_that_are_none_are_refused(change: dict[str, Any], said: str) -> None:
+    design = found(evaluations=12, held_out=8)
+    with pytest.raises(SomersaultError, match=said):
+        design.on(**change)

@@ -15,7 +15,7 @@ from test_designs import BOTH, TWISTED, Bowl, found
 import somersault as so
 from somersault import SomersaultError
 from somersault.designs import Choose, Limit, Mean
-from somersault.simulation import Numbers
+from somersault.simulation import ENDED, Numbers, Variable
 
 
 @dataclass(frozen=True)
@@ -198,3 +198,39 @@ def test_a_motion_with_another_tape_is_another_design(tmp_path: Any) -> None:
     assert searched(made).table.tobytes() == searched(partial(made)).table.tobytes()
     with pytest.raises(SomersaultError, match="holds another design"):
         searched(partial(made, late=0.1))
+
+
+@dataclass(frozen=True)
+class Torque(Bowl):
+    """A bowl that reports its torque alone."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "variables", {"torque": Variable("1")})
+
+    def run(self, values: Numbers, count: int) -> Mapping[str, np.ndarray]:
+        rows = super().run(values, count)
+        return {name: rows[name] for name in ("torque", ENDED)}
+
+
+@pytest.mark.parametrize(
+    ("other", "said"),
+    [
+        (Torque(), "error is not reported of a candidate"),
+        ([Bowl(), Bowl()], "run as 2 cases, and the first as 1"),
+        (None, "None is nothing that can be run"),
+    ],
+)
+def test_a_function_whose_candidates_differ_in_kind_is_refused(other: Any, said: str) -> None:
+    with pytest.raises(SomersaultError, match=said):
+        found(
+            {"by": Choose(between=(-1.0, 1.0))}, of=lambda by: Moved(by=by) if by <= 0 else other,
+            evaluations=20,
+        )  # fmt: skip
+
+
+def test_a_function_of_other_cases_judges_the_same_design() -> None:
+    made = found({"by": Choose(between=(-1.0, 1.0))}, of=lambda by: Moved(by=by), evaluations=20)
+    twice = made.on(simulation=lambda by: [Moved(by=by), Moved(by=by + 1.0)])
+    assert twice.dataset.sizes["start"] == 2 * 4_000
+    with pytest.raises(SomersaultError, match="error is not reported of these runs"):
+        made.on(simulation=lambda by: Torque())

@@ -163,6 +163,7 @@ NOT_FOR_USERS = {
             "Run",
             "Runs.carried_out",
             "workers_kept",
+            "check_name",
             "Runs.run",
             "Runs.sound",
             "Runs.with_varied",

@@ -12,7 +12,11 @@ from somersault._core.array import Array
 from somersault._core.checks import instance, name_list, one_of, shown, text
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number, numbers
+from somersault.ensembles import check_name
 from somersault.simulation import Name, Simulation
+
+FIGURE = "figure"
+"""What an objective's figure is called where it is reported."""
 
 _SCALES = ("linear", "log")
 
@@ -73,9 +77,12 @@ class Choose:
         Raises
         ------
         SomersaultError
-            For empty bounds, and for what moves no number.
+            For empty bounds, for what moves no number, and for what can be no name.
         """
         where = f"choose.{name}"
+        check_name("choose", name)
+        if name == FIGURE:
+            raise SomersaultError(f"{where}: that name is taken; call the quantity otherwise")
         instance(where, self, Choose)
         text(f"{where}.unit", self.unit)
         one_of(f"{where}.scale", self.scale, _SCALES)

@@ -15,7 +15,7 @@ from somersault._core.array import Array
 from somersault._core.checks import shown
 from somersault._core.errors import SomersaultError
 from somersault.designs._choose import Choose, table_of
-from somersault.designs._source import Group, Source
+from somersault.designs._source import Group, Misfit, Source
 from somersault.simulation import Simulation
 
 _GOLDEN = 0.5 * (5**0.5 - 1)  # whose multiples, without the whole numbers, are all over 0 to 1
@@ -48,6 +48,8 @@ class Made(Source):
         """What the function makes for a candidate; nothing where it says that it cannot be."""
         try:
             return self.read(self.function(**arguments(self.chosen, row)))
+        except Misfit:
+            raise
         except SomersaultError:
             return ()
 
@@ -58,7 +60,9 @@ class Made(Source):
                 "give another of what is chosen"
             )
         check_arguments(what, self.chosen)
-        return replace(self, function=what)
+        begins = np.array([[one.begins for one in self.chosen.values()]])
+        begin = arguments(self.chosen, table_of(self.chosen, begins)[0])
+        return replace(self, function=what, cases=self.read(what(**begin)))
 
 
 def arguments(chosen: Mapping[str, Choose], row: Array) -> dict[str, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -9,12 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from somersault._core.array import Array
-from somersault._core.checks import one_of, whole_number
+from somersault._core.checks import by_name, one_of, whole_number
 from somersault._core.errors import SomersaultError
 from somersault._core.numbers import number
 from somersault.designs._candidates import CANDIDATE, Candidates
-from somersault.designs._surface import FIGURE, Surface
-from somersault.designs._trial import Outcome, Trial
+from somersault.designs._choose import FIGURE
+from somersault.designs._surface import Surface
+from somersault.designs._trial import MOST_SEED, MOST_SIZE, Outcome, Trial
 from somersault.ensembles import Vary, sensitivity
 from somersault.simulation import ENDED
 
@@ -322,23 +324,41 @@ class Design:
         data = self.map(x, y, steps, reach, progress)
         return plot_map(data, self.trial.chosen, self.best)
 
-    def on(self, **changes: Any) -> Design:
+    def on(
+        self, *, simulation: Any = None, vary: Mapping[str, Vary] | None = None,
+        size: int | None = None, seed: int | None = None, sequence: str | None = None,
+    ) -> Design:  # fmt: skip
         """The same design judged on other starts.
 
         Parameters
         ----------
-        **changes
-            `vary`, `size`, `seed`, `sequence`, or as `simulation` something else with the same
-            numbers (another function, where one makes what is run), as of another angular
-            momentum.
+        simulation : optional
+            Something else with the same numbers, as of another angular momentum; another function,
+            where one makes what is run.
+        vary : mapping of str to Vary, optional
+            Another scatter.
+        size, seed, sequence : optional
+            Of the starts, as for `design`: 2 at least.
 
         Returns
         -------
         Design
+
+        Raises
+        ------
+        SomersaultError
+            As `design`, for what cannot be run or scattered.
         """
-        if "simulation" in changes:
-            changes["source"] = self.held_out.source.of(changes.pop("simulation"))
-        other = replace(self.held_out, **changes)
+        held_out = self.held_out
+        changes: dict[str, Any] = {
+            "source": None if simulation is None else held_out.source.of(simulation),
+            "vary": None if vary is None else by_name("vary", vary),
+            "size": None if size is None else whole_number("size", size, 2, MOST_SIZE),
+            "seed": None if seed is None else whole_number("seed", seed, 0, MOST_SEED),
+            "sequence": sequence,
+        }
+        other = replace(held_out, **{n: x for n, x in changes.items() if x is not None})
+        other.check()
         return replace(self, held_out=other, rows=other.run(self.table))
 
 

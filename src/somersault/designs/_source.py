@@ -8,9 +8,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from somersault._core.array import Array
+from somersault._core.errors import SomersaultError
 from somersault.designs._candidates import Candidates
 from somersault.designs._choose import Choose, Move
 from somersault.simulation import Simulation
+
+
+class Misfit(SomersaultError):  # noqa: N818
+    """What is given to be run is no such thing, whatever is chosen."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,8 +24,8 @@ from somersault.designs._journal import Journal
 from somersault.designs._limit import Limit
 from somersault.designs._made import Made, arguments, check_arguments
 from somersault.designs._objective import Objective
-from somersault.designs._source import Source
-from somersault.designs._trial import Trial
+from somersault.designs._source import Misfit, Source
+from somersault.designs._trial import MOST_SEED, MOST_SIZE, Trial
 from somersault.ensembles import Vary
 from somersault.flight import Maneuver, Report, flights
 from somersault.simulation import ENDED, Simulation
@@ -33,7 +33,6 @@ from somersault.simulation import ENDED, Simulation
 EVALUATIONS, SIZE, HELD_OUT = 400, 64, 1_024
 WIDTH = 0.25
 _MOST_EVALUATIONS = 1_000_000
-_MOST_SIZE = 10_000_000
 _EXTREMES = ("least_", "greatest_")
 
 
@@ -136,12 +135,13 @@ def study(
         _source(what, chosen, table_of(chosen, begins[None])[0], aims, made),
         dict(by_name("vary", vary)), aims,
         tuple(limit.checked() for limit in list_of("limits", limits, Limit)),
-        whole_number("size", much.size, 1, _MOST_SIZE), whole_number("seed", much.seed, 0, 2**31),
+        whole_number("size", much.size, 1, MOST_SIZE),
+        whole_number("seed", much.seed, 0, MOST_SEED),
         much.sequence,
     )  # fmt: skip
     trial.check()
     whole_number("evaluations", much.evaluations, 2, _MOST_EVALUATIONS)
-    whole_number("held_out", much.held_out, 2, _MOST_SIZE)
+    whole_number("held_out", much.held_out, 2, MOST_SIZE)
     if much.population is not None:
         whole_number("population", much.population, 2, much.evaluations)
     folder = None if out is None else file_path("out", out)
@@ -173,8 +173,6 @@ def _source(
     wanted = [one.quantity for one in aims if one.quantity not in chosen]
     read = partial(_simulations, wanted=wanted)
     cases = read(what(**arguments(chosen, begins)) if made else what)
-    if not cases:
-        raise SomersaultError("nothing is run; give a Maneuver, or flight.flights(…)")
     if len({tuple(case.variables) for case in cases}) > 1:
         raise SomersaultError("cases report different things; let all of them report the same")
     moves = {name: moves_of(cases[0], name, one) for name, one in chosen.items()}
@@ -187,6 +185,8 @@ def _source(
 def _simulations(given: Any, wanted: Sequence[str]) -> tuple[Simulation, ...]:
     """One or several that are run."""
     several = isinstance(given, Sequence) and not isinstance(given, str)
+    if several and not given:
+        raise Misfit("nothing is run; give a Maneuver, or flight.flights(…)")
     return tuple(_simulation(one, wanted) for one in (given if several else (given,)))
 
 
@@ -202,7 +202,7 @@ def _simulation(what: Any, wanted: Sequence[str]) -> Simulation:
         there = [name for name in wanted if name in Report.quantities]
         return flights(what, report=Report((*there, *ends), tuple(dict.fromkeys(extremes))))
     if not isinstance(what, Simulation):
-        raise SomersaultError(
+        raise Misfit(
             f"{shown(what)} is nothing that can be run; give a Maneuver, or flight.flights(…)"
         )
     return what

@@ -11,11 +11,11 @@ import numpy as np
 from somersault._core.array import Array
 from somersault._core.canonical import canonical
 from somersault._core.errors import SomersaultError
+from somersault.designs._choose import FIGURE
 from somersault.designs._trial import Trial
 from somersault.ensembles import Vary, carried_out, plan
 from somersault.simulation import ENDED, Endings, Name, Numbers, Target, Variable
 
-FIGURE = "figure"
 _ENDINGS = Endings(
     ("judged", "no candidate"), ("no candidate",), "no candidate", called="candidates"
 )

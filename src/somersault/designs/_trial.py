@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import fnmatch
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from somersault._core.array import Array
+from somersault._core.checks import instance
 from somersault._core.errors import SomersaultError
 from somersault.designs._candidates import CANDIDATE, Candidates
 from somersault.designs._choose import Choose, table_of
@@ -20,6 +21,8 @@ from somersault.designs._source import Group, Source
 from somersault.ensembles import Plan, Vary, carried_out, plan
 from somersault.simulation import ENDED, Simulation
 
+MOST_SIZE = 10_000_000
+MOST_SEED = 2**31
 NOT_MADE = 1e6
 """How far beyond its limits a candidate is that cannot be made: farther than any other."""
 
@@ -114,6 +117,7 @@ class Trial:
     ) -> dict[str, Array]:
         if not group.cases:
             return self._not_made(group.count, vary)
+        self._check_alike(group.cases)
         parts = []
         for case in group.cases:
             planned = self.ensemble(case, vary)
@@ -124,6 +128,21 @@ class Trial:
                 rows = planned.run(0, planned.count)
             parts.append({n: x.reshape(group.count, -1) for n, x in rows.items()})
         return {name: np.concatenate([part[name] for part in parts], 1) for name in self._reported}
+
+    def _check_alike(self, cases: Sequence[Simulation]) -> None:
+        """SomersaultError for candidates that could not be compared."""
+        first = len(self.source.cases)
+        if len(cases) != first:
+            raise SomersaultError(
+                f"a candidate is run as {len(cases)} cases, and the first as {first}; let the "
+                "function make as many for all"
+            )
+        for case in cases:
+            for name in sorted(self._reported - {ENDED} - set(case.variables)):
+                raise SomersaultError(
+                    f"{name} is not reported of a candidate, and is of the first; let the function "
+                    "report the same of all"
+                )
 
     def _not_made(self, count: int, vary: Mapping[str, Vary]) -> dict[str, Array]:
         """What is reported of candidates that cannot be made: none of their runs can begin."""
@@ -230,8 +249,13 @@ class Trial:
                 "nothing is scattered, so nothing is more reliable than anything else; say what "
                 "varies"
             )
-        if CANDIDATE in self.vary:
-            raise SomersaultError(f"vary.{CANDIDATE} is what candidates are called; rename it")
+        if all(instance(f"vary.{n}", v, Vary).grid is not None for n, v in self.vary.items()):
+            raise SomersaultError(
+                "a grid of values has no other starts, on which the best could be judged; let "
+                "something that varies have a distribution, as uniform or normal"
+            )
+        for name in set(self.vary) & {CANDIDATE, "case"}:
+            raise SomersaultError(f"vary.{name} has the name of what a design runs; rename it")
         sets = {move.name for row in self.source.moves.values() for move in row}
         for name, vary in self.vary.items():
             if vary.adds:

@@ -6,7 +6,7 @@ from somersault.ensembles._endings import ended_by, failed
 from somersault.ensembles._ensemble import ensemble
 from somersault.ensembles._kept import workers_kept
 from somersault.ensembles._landings import landing_derivatives, landing_map
-from somersault.ensembles._plan import Plan, plan
+from somersault.ensembles._plan import Plan, check_name, plan
 from somersault.ensembles._result import Ensemble, check_out
 from somersault.ensembles._scheduler import tls_files
 from somersault.ensembles._sensitivity import quick_sensitivity, sensitivity
@@ -21,6 +21,7 @@ __all__ = [
     "Plan",
     "Vary",
     "carried_out",
+    "check_name",
     "check_out",
     "ended_by",
     "ensemble",

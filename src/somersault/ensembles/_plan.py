@@ -282,13 +282,30 @@ def plan(
     return planned
 
 
-def _check_name(name: str, simulation: Simulation) -> None:
+def check_name(what: str, name: str) -> None:
+    """SomersaultError for what cannot be the name of a quantity that varies.
+
+    Parameters
+    ----------
+    what : str
+        The table that it stands in: "vary".
+    name : str
+
+    Raises
+    ------
+    SomersaultError
+        For other signs than letters, digits, _ and -, and for a name that is taken.
+    """
     if not _NAME.fullmatch(name):
         raise SomersaultError(
-            f"vary.{name!r} is no name for a quantity; names are of letters, digits, _ and -"
+            f"{what}.{name!r} is no name for a quantity; names are of letters, digits, _ and -"
         )
     if name in (SAMPLE, OVER_TIME, ENDED, SEAL):
-        raise SomersaultError(f"vary.{name}: that name is taken; call the quantity otherwise")
+        raise SomersaultError(f"{what}.{name}: that name is taken; call the quantity otherwise")
+
+
+def _check_name(name: str, simulation: Simulation) -> None:
+    check_name("vary", name)
     if name in simulation.variables:
         raise SomersaultError(
             f"vary.{name} has the name of something reported; call it takeoff_{name}, say"
