@@ -1238,7 +1238,7 @@ CALLS: dict[str, Callable[[], tuple[Call, Right]]] = {
     ),
     "ensembles.parse_ensemble": lambda: (
         ensembles.parse_ensemble,
-        {"given": SPEC, "beside": Path()},
+        {"given": SPEC, "beside": Path(), "others": ["search"], "of": "a design's SPEC"},
     ),
     "ensembles.plan": lambda: (
         ensembles.plan,

@@ -290,6 +290,10 @@ def test_a_design_can_be_sent_to_another_process() -> None:
         ({"objective": Share("error", most=-0.1)}, "objective.most must be positive"),
         ({"objective": Share("error", most=0.1, least=0.5)}, "least is 0.5, and must be below"),
         ({"objective": Share("error", most=1.0), "of": Bowl(fails_above=-9.0)}, "all 4,000 held"),
+        (
+            {"limits": Limit("torque", most=1.0)},
+            "a list of somersault.designs.Limit",
+        ),
         ({"limits": [Limit("torque")]}, "limit has no bounds"),
         ({"limits": [Limit("torque", most=1.0, least=2.0)]}, "least is 2, and must be below"),
         ({"limits": [Limit("torque", most=0.0)]}, "must be positive"),

@@ -234,6 +234,14 @@ def test_the_shell_trades_off(tmp_path: Path) -> None:
     assert "points of the front of 48 candidates" in page
 
 
+def test_a_spec_has_ranges(tmp_path: Path) -> None:
+    spec = tmp_path / "front.toml"
+    limit = '[limits.turned]\nquantity = "twist"\nleast = -0.5\nmost = 2\nshare = 0.9\n'
+    spec.write_text(SPEC + limit)
+    (read,) = so.designs.read_design(spec).limits
+    assert read == Limit("twist", most=2.0, least=-0.5, share=0.9)
+
+
 @pytest.mark.parametrize(
     ("change", "said"),
     [
@@ -242,6 +250,19 @@ def test_the_shell_trades_off(tmp_path: Path) -> None:
         (("evaluations = 48", "width = 0.2"), "search.width is for objectives, one alone"),
         (("[objectives.twist]", "[objectives]\nodd = 3\n[objectives.twist]"), "objectives.odd"),
         (('quantity = "K"', ""), "objectives.soft.quantity is missing"),
+        (
+            ('quantity = "K"', 'quantity = "K"\nq = 1'),
+            "objectives.soft.q is no key of a SPEC",
+        ),
+        (
+            ("[search]", "[serch]"),
+            "serch is no key of a design's SPEC.*, limits, search",
+        ),
+        (
+            ("between =", 'scale = "lg"\nbetween ='),
+            "K.scale must be 'linear' or 'log', and",
+        ),
+        (("[search]", "[limits.low]\nmost = 1\n[search]"), "limits.low.quantity is missing"),
     ],
 )
 def test_a_spec_that_is_none_is_refused(change: tuple[str, str], said: str, tmp_path: Path) -> None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import os
+import sys
 from collections.abc import Iterable, Mapping
+from itertools import takewhile
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -104,7 +106,7 @@ def list_of(what: str, value: Any, kind: type[T]) -> list[T]:
         things = [None]
     if not all(isinstance(thing, kind) for thing in things):
         raise SomersaultError(
-            f"{what} must be a list of somersault.{kind.__name__}, and is {shown(value)}"
+            f"{what} must be a list of {_public_name(kind)}, and is {shown(value)}"
         )
     return things
 
@@ -112,5 +114,14 @@ def list_of(what: str, value: Any, kind: type[T]) -> list[T]:
 def instance(what: str, value: Any, kind: type[T]) -> T:
     """A value of some class; SomersaultError naming `what` and how such are called."""
     if not isinstance(value, kind):
-        raise SomersaultError(f"{what} must be a somersault.{kind.__name__}, and is {shown(value)}")
+        raise SomersaultError(f"{what} must be a {_public_name(kind)}, and is {shown(value)}")
     return value
+
+
+def _public_name(kind: type) -> str:
+    """By which users know a class of ours: that of the package, or of a room in it."""
+    package, *rooms = kind.__module__.split(".")
+    if kind.__name__ in getattr(sys.modules[package], "__all__", ()):
+        return f"{package}.{kind.__name__}"
+    public = takewhile(lambda room: not room.startswith("_"), rooms)
+    return ".".join([package, *public, kind.__name__])

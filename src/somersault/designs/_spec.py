@@ -140,7 +140,7 @@ def parse_design(given: Mapping[str, Any], beside: Path) -> DesignSpec:
             raise SomersaultError(f"a design's SPEC needs a table [{key}]; see docs/design.md")
     if aims == _SEVERAL and _ONE in given:
         raise SomersaultError("a design has [objective] or [objectives.NAME], and this has both")
-    plan = parse_ensemble({k: v for k, v in given.items() if k not in _TABLES}, beside).plan
+    plan = parse_ensemble(given, beside, _TABLES, "a design's SPEC").plan
     keys = structured({k: v for k, v in given.items() if k in Tables.__dataclass_fields__}, Tables)
     objectives: tuple[Objective, ...]
     if aims == _ONE:
@@ -166,7 +166,7 @@ def _objective(where: str, given: Any) -> Objective:
     one_of(f"{where}.kind", kind, Objective.kinds)
     if "quantity" not in table:
         raise SomersaultError(f"{where}.quantity is missing; say what is reported of each run")
-    return structured(table, Objective.kinds[kind])
+    return structured(table, Objective.kinds[kind], where)
 
 
 def _powers(value: Any, _: Any) -> Any:

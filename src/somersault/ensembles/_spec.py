@@ -115,7 +115,9 @@ def read_ensemble(path: Path) -> EnsembleSpec:
     return parse_ensemble(read_toml(file), file.parent)
 
 
-def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
+def parse_ensemble(
+    given: Mapping[str, Any], beside: Path, others: Sequence[str] = (), of: str | None = None
+) -> EnsembleSpec:
     """The ensemble in a SPEC's tables.
 
     Parameters
@@ -124,6 +126,10 @@ def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
         As TOML has it.
     beside : pathlib.Path
         The folder in which files that it names are looked for.
+    others : sequence of str
+        Keys that it may also have, and that somebody else reads.
+    of : str, optional
+        Whose SPEC it then is, in a message: "a design's SPEC".
 
     Returns
     -------
@@ -135,19 +141,26 @@ def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
         Naming the key, for what does not fit.
     """
     require_table(given)
+    if "robot" in given:
+        known, called = [*RUN_KEYS, *_DRAWN], "an ensemble of runs"
+    elif "spin" in given:
+        known, called = [*SpinKeys.__dataclass_fields__, *_DRAWN], "an ensemble of spins"
+    elif "samples" in given:
+        raise SomersaultError("samples is no key of an ensemble's SPEC; histories are in [report]")
+    else:
+        known = [*(key for key in KEYS if key != "samples"), *_TABLES]
+        called = "an ensemble's SPEC"
+    given = {key: value for key, value in given.items() if key not in others}
     for key in _TABLES:
         if not isinstance(given.get(key, {}), Mapping):
             raise SomersaultError(f"{key} must be a table; write [{key}]")
     if "vary" in given and not given["vary"]:
         raise SomersaultError("vary is empty; say what varies, [vary.NAME], or leave it out")
+    _require_keys(given, [*known, *others], of or called)
     if "robot" in given:
         return _of_runs(given, beside)
     if "spin" in given:
         return _of_spins(given, beside)
-    if "samples" in given:
-        raise SomersaultError("samples is no key of an ensemble's SPEC; histories are in [report]")
-    flown_keys = [key for key in KEYS if key != "samples"]
-    _require_keys(given, [*flown_keys, *_TABLES], "an ensemble's SPEC")
     flown = Maneuver.parse({k: v for k, v in given.items() if k not in _TABLES}, beside)
     keys = _tables(given)
     target = dict(keys.target)
@@ -168,16 +181,13 @@ def parse_ensemble(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
 
 def _of_runs(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
     """Runs of a robot, which report what they report."""
-    _require_keys(given, [*RUN_KEYS, *_DRAWN], "an ensemble of runs")
     runs = parse_runs({k: v for k, v in given.items() if k not in _DRAWN}, beside)
     return EnsembleSpec(_planned(runs, _tables(given)), None, tuple(runs.variables))
 
 
 def _of_spins(given: Mapping[str, Any], beside: Path) -> EnsembleSpec:
     """Spins of a model, which report how stable each is for small motions."""
-    keys = tuple(SpinKeys.__dataclass_fields__)
-    _require_keys(given, [*keys, *_DRAWN], "an ensemble of spins")
-    one = structured({k: v for k, v in given.items() if k in keys}, SpinKeys)
+    one = structured({k: v for k, v in given.items() if k not in _DRAWN}, SpinKeys)
     many = spins(
         model_beside(one.model, file_path("beside", beside)), pose=one.spin.pose,
         stiffness=one.spin.stiffness, damping=one.spin.damping, axis=one.spin.axis,

@@ -10,7 +10,7 @@ import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from operator import eq
-from typing import Any, TypeVar, get_args, get_origin
+from typing import Any, Literal, TypeVar, get_args, get_origin
 
 import numpy as np
 
@@ -202,6 +202,13 @@ def _whole(value: Any, _: Any) -> int:
     return int(value)
 
 
+def _word(value: Any, kind: Any) -> Any:
+    words = get_args(kind)
+    if not any(type(value) is type(word) and value == word for word in words):
+        raise Unfit(" or ".join(map(repr, words)), value)
+    return value
+
+
 def _text(value: Any, _: Any) -> str:
     if not isinstance(value, str):
         raise Unfit("a text", value)
@@ -247,6 +254,8 @@ def _converter() -> Any:
             converter.register_structure_hook(kind, hook)
         else:
             converter.register_structure_hook_func(partial(eq, kind), hook)
+
+    converter.register_structure_hook_func(lambda t: get_origin(t) is Literal, _word)
 
     def table(kind: Any) -> Hook:
         inner = make_dict_structure_fn(kind, converter, _cattrs_forbid_extra_keys=True)
