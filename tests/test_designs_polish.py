@@ -60,6 +60,11 @@ def test_it_comes_to_where_the_mean_square_is_least() -> None:
         rows = fine.trial.run(fine.trial.table(parts))
         return (rows["landing_error"] ** 2).mean(1)
 
+    assert rough.polished is None
+    assert fine.polished == pytest.approx(cost(fine))
+    drawn = [text.get_text() for text in fine.plot(steps=2).axes[0].texts]
+    assert drawn == ["polished"]
+    assert not rough.plot(steps=2).axes[0].texts
     near = np.clip(fine.parts + 0.02 * np.random.default_rng(0).normal(size=(24, 2)), 0, 1)
     assert mean_square(fine.parts[None])[0] < mean_square(near).min() * 1.01
 

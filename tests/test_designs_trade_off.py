@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -232,6 +233,12 @@ def test_the_shell_trades_off(tmp_path: Path) -> None:
     assert picture.stat().st_size > 10_000
     page = subprocess.run(command, capture_output=True, check=True, encoding="utf-8").stdout
     assert "points of the front of 48 candidates" in page
+    assert "mean twist (rad)" in page
+    assert record["objective_units"] == ["rad", ""]
+    one = SPEC.replace("[objectives.twist]", "[objective]").replace("points = 4", "")
+    spec.write_text(one.replace('[objectives.soft]\nkind = "mean"\nquantity = "K"\n', ""))
+    page = subprocess.run(command, capture_output=True, check=True, encoding="utf-8").stdout
+    assert re.search(r"mean twist, 8 other starts: [\d.]+ rad \(", page)
 
 
 def test_a_spec_has_ranges(tmp_path: Path) -> None:

@@ -88,9 +88,7 @@ MISTAKES: dict[str, Callable[[], Any]] = {
     "begin must be a number": lambda: so.Motion(PATHS, "early", 1.0, True),
     "ends too soon": lambda: so.Motion(PATHS, 2.0, 1.0, True),
     "held must be true or false": lambda: so.Motion(PATHS, 0.0, 1.0, "yes"),
-    "joint elbow: path must be a somersault.motion.Path": lambda: so.Motion(
-        {"elbow": 1}, 0, 1, True
-    ),
+    "elbow: path must be a somersault.motion.Path": lambda: so.Motion({"elbow": 1}, 0, 1, True),
     "duration -1 s is none": lambda: so.prescribed("gymnast", so.Motion(PATHS, 0.0, 1.0, True), -1),
     "ignore_others must be true or false": lambda: so.read_motion(
         "dive.csv", "gymnast", ignore_others="yes"

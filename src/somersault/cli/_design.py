@@ -102,6 +102,7 @@ def _record(found: Design) -> dict[str, Any]:
         "starts": next(iter(found.rows.values())).shape[1],
         "candidates": sum(len(parts) for parts, _ in found.generations),
         "worst_start": found.worst_start,
+        "unit": found.trial.unit(found.trial.objective),
         "units": {name: one.unit for name, one in found.trial.chosen.items()},
     }
 
@@ -120,6 +121,7 @@ def _front(found: TradeOff) -> dict[str, Any]:
     return {
         "model": found.trial.simulation.name,
         "objectives": [str(name) for name in data["objective"].values],
+        "objective_units": [str(unit) for unit in data["units"].values],
         "points": points,
         "first": found.first["figure"].values.tolist(),
         "starts": next(iter(found.rows.values())).shape[1],
@@ -130,8 +132,8 @@ def _front(found: TradeOff) -> dict[str, Any]:
 
 def _front_page(record: dict[str, Any]) -> list[str]:
     points, aims = record["points"], record["objectives"]
-    names = [f"{name} ({unit})" if unit else name for name, unit in record["units"].items()]
-    rows = [[*aims, *names]]
+    named = [*zip(aims, record["objective_units"], strict=True), *record["units"].items()]
+    rows = [[f"{name} ({unit})" if unit not in ("", "1") else name for name, unit in named]]
     for point in points:
         spans = zip(point["figure"], point["low"], point["high"], strict=True)
         figures = [_with_interval(*span) for span in spans]
@@ -159,6 +161,7 @@ def _places(record: dict[str, Any]) -> list[str]:
 
 
 def _page(record: dict[str, Any]) -> list[str]:
+    unit = "" if record["unit"] == "1" else f" {record['unit']}"
     worst = ", ".join(f"{name} {x:.4g}" for name, x in record["worst_start"].items())
     lines = [f"{record['model']}: best of {record['candidates']:,} candidates"]
     lines += [
@@ -166,7 +169,7 @@ def _page(record: dict[str, Any]) -> list[str]:
         for name, x in record["chosen"].items()
     ]
     lines += [
-        f"  {record['objective']}, {record['starts']:,} other starts: {record['figure']:.4g} "
+        f"  {record['objective']}, {record['starts']:,} other starts: {record['figure']:.4g}{unit} "
         f"({record['low']:.4g} to {record['high']:.4g} with 95 % confidence); at first "
         f"{record['first']:.4g}",
         f"  worst start: {worst}",

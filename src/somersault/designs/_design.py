@@ -79,7 +79,8 @@ def design(
     sequence : {"sobol", "random", "halton"}
         How starts are drawn.
     evaluations : int
-        How many candidates are judged at most.
+        How many candidates are judged: the search ends with the generation that reaches as many,
+        which is judged as a whole, or before if it has settled.
     population : int, optional
         How many candidates a generation has; by default 4 + 3 ln n of n chosen quantities.
     width : float
@@ -149,13 +150,14 @@ def design(
 
         search(sought.begins, width, evaluations, population, seed, sought.journal, outcome, heard)
     candidates, costs = sought.found()
-    parts = candidates[np.argmin(costs)]
+    parts, polished = candidates[np.argmin(costs)], None
     if squares is not None:
         steps = squares.steps_from(parts)
         came = outcome(steps)
         better = np.where(came.beyond <= 0, came.costs, np.inf)
         if better.min() < costs.min():
             parts = steps[np.argmin(better)]
+            polished = float(came.figures[np.argmin(better)])
     table = sought.trial.table(np.stack([sought.begins, parts]))
     fresh, rows = sought.judged(table)
-    return Design(sought.trial, fresh, table, parts, sought.journal.generations, rows)
+    return Design(sought.trial, fresh, table, parts, sought.journal.generations, rows, polished)

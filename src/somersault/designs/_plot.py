@@ -21,11 +21,12 @@ _COLUMNS = 3
 def plot(
     history: xr.Dataset, around: xr.Dataset, chosen: Mapping[str, Choose],
     best: Mapping[str, float], figure: float, interval: tuple[float, float],
+    polished: float | None,
 ) -> Figure:  # fmt: skip
     """Left the best figure so far; then the figure along each chosen quantity, the others staying.
 
     The horizontal line and its band are the best candidate's `figure` on held-out starts and its
-    confidence interval.
+    confidence interval. A figure to which the best was `polished` stands after the candidates.
     """
     with look.style():
         names = [str(name) for name in around["quantity"].values]
@@ -36,6 +37,14 @@ def plot(
         judged = np.arange(1, history.sizes["generation"] + 1) * history.sizes["candidate"]
         axes[0].plot(judged, history["best"], color=look.BLUE)
         axes[0].set(xlabel="candidates", title="best so far, starts of the search")
+        if polished is not None:
+            drop = [float(history["best"][-1]), polished]
+            axes[0].plot([judged[-1]] * 2, drop, ":", color=look.BLUE)
+            axes[0].plot(judged[-1], polished, "o", ms=4, color=look.BLUE)
+            axes[0].annotate(
+                "polished", (judged[-1], polished), (-6, 0), textcoords="offset points",
+                ha="right", va="center",
+            )  # fmt: skip
         for ax, name in zip(axes[1:], names, strict=False):
             row = around.sel(quantity=name)
             ax.plot(row["value"], row["figure"], "o-", ms=3, color=look.BLUE)

@@ -47,6 +47,9 @@ class Design:
         Candidates, as parts of their ways (P, chosen), and what they came to.
     rows : mapping of str to ndarray, (2, N)
         What is reported of both from the held-out starts.
+    polished : float, optional
+        The figure, on the starts of the search, to which least squares came after it; None where
+        the best is the search's own.
     """
 
     trial: Trial
@@ -55,6 +58,7 @@ class Design:
     parts: Array
     generations: list[tuple[Array, Outcome]]
     rows: dict[str, Array]
+    polished: float | None = None
 
     def __repr__(self) -> str:
         chosen = ", ".join(f"{name} {value:.4g}" for name, value in self.best.items())
@@ -64,8 +68,10 @@ class Design:
     def words(self) -> str:
         """The figure on held-out starts, in words."""
         low, high = self.interval
+        unit = self.trial.unit(self.trial.objective)
+        figure = f"{self.figure:.4g} {'' if unit == '1' else unit}".rstrip()
         return (
-            f"{self.trial.objective.words} {self.figure:.4g} ({low:.4g} to {high:.4g} with 95 % "
+            f"{self.trial.objective.words} {figure} ({low:.4g} to {high:.4g} with 95 % "
             f"confidence), at first {self.first_figure:.4g}"
         )
 
@@ -302,7 +308,7 @@ class Design:
 
         return plot(
             self.history, self.around(steps, reach), self.trial.chosen, self.best, self.figure,
-            self.interval,
+            self.interval, self.polished,
         )  # fmt: skip
 
     def plot_map(
