@@ -162,7 +162,6 @@ NOT_FOR_USERS = {
             "Machine",
             "Run",
             "Runs.carried_out",
-            "workers_kept",
             "check_name",
             "Runs.run",
             "Runs.sound",
