@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, get_type_hints
 
-from somersault._core.checks import file_path
+from somersault._core.checks import file_path, name_list, text
 from somersault._core.errors import SomersaultError
 from somersault.ensembles._plan import Plan, plan
 from somersault.ensembles._vary import Vary
@@ -150,13 +150,15 @@ def parse_ensemble(
     else:
         known = [*(key for key in KEYS if key != "samples"), *_TABLES]
         called = "an ensemble's SPEC"
-    given = {key: value for key, value in given.items() if key not in others}
+    apart = name_list("others", others)
+    called = called if of is None else text("of", of)
+    given = {key: value for key, value in given.items() if key not in apart}
     for key in _TABLES:
         if not isinstance(given.get(key, {}), Mapping):
             raise SomersaultError(f"{key} must be a table; write [{key}]")
     if "vary" in given and not given["vary"]:
         raise SomersaultError("vary is empty; say what varies, [vary.NAME], or leave it out")
-    _require_keys(given, [*known, *others], of or called)
+    _require_keys(given, [*known, *apart], called)
     if "robot" in given:
         return _of_runs(given, beside)
     if "spin" in given:
