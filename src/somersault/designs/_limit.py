@@ -29,7 +29,8 @@ class Limit:
         least that, and with both it is from `least` to `most`: "*_left_hip" from -0.3 to 2.5 is
         the range of a joint whose extremes are reported.
     share : float
-        Of the runs, in how many at least; those that failed are left out.
+        Of the runs, in how many at least; one that failed counts as within, and the objective has
+        it against it.
     unperturbed : bool
         Whether it is for the one run in which nothing is scattered, and not for the scattered ones;
         it must not fail.
