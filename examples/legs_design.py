@@ -3,8 +3,9 @@
 Run with `python examples/legs_design.py [MODEL [JOINT [CANDIDATES]]]`: any free model with a slide,
 or a mirrored pair of them, along which its legs lengthen. The angular momentum is off by 5 %. Legs
 of one length are compared with legs on springs and dampers; the springs' numbers are chosen so that
-the somersault lands nearest to where it should. Takes about a minute; stopped, it goes on where it
-was. Writes legs_design.png and the folders legs_rigid and legs_sprung.
+the somersault lands nearest to where it should. The landing error is half of what the somersault
+is off by. Takes about a minute; stopped, it goes on where it was. Writes legs_design.png and the
+folders legs_rigid and legs_sprung.
 """
 
 import sys
@@ -50,7 +51,7 @@ def main(model: str = "biped", joint: str = "leg", candidates: str = "240") -> N
         best = ", ".join(f"{key} {x:.3g} {choose[key].unit}" for key, x in found[name].best.items())
         low, high = found[name].interval
         print(
-            f"{name} legs ({best}): mean error {found[name].figure:.3f} rad "
+            f"{name} legs ({best}): mean landing error {found[name].figure:.3f} rad "
             f"({low:.3f} to {high:.3f})"
         )
     print(f"{found['rigid'].figure / found['sprung'].figure:.1f} times less on springs")
