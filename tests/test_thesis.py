@@ -289,7 +289,7 @@ def test_every_entry_runs_and_explains_what_does_not_hold(tmp_path):
         # The gentle motion at 0.9 h: 94 % (92 to 96) land, and with damping the mean is 0.031 rad.
         "sec7-5.momenta-rudi_gentle",
         "sec7-5.momenta-damped-rudi_gentle",
-        "sec7-5.neck",  # a second passive freedom adds nothing
+        "sec7-5.neck",  # a head on a sprung neck adds nothing; hips do
         "sec1-1-dismount.noise",  # noisy senses and a misjudged time cost a third of the landings
         "sec1-1.twist",  # the twist alone, and the twist rate alone, stabilise nothing
         "sec7-4.rate",
