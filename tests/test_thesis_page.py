@@ -66,18 +66,44 @@ def test_what_is_beyond_the_thesis_is_marked():
 
 
 @pytest.mark.parametrize(
-    ("count", "differ", "said"),
+    ("count", "differ", "missed", "said"),
     [
-        (428, 21, "428 claims were checked: 407 agree; 21 of the thesis's numbers are misprints or "
-         "differ, each explained."),
-        (12, 1, "12 claims were checked: 11 agree; 1 of the thesis's numbers is a misprint or "
+        (428, 21, 0, "428 claims were checked: 407 agree; 21 of the thesis's numbers are misprints "
+         "or differ, each explained."),
+        (12, 1, 0, "12 claims were checked: 11 agree; 1 of the thesis's numbers is a misprint or "
          "differs, as explained."),
-        (9, 0, "9 claims were checked, and all agree."),
-        (0, 0, "Nothing here was checked."),
+        (595, 31, 6, "595 claims were checked: 558 agree; 31 of the thesis's numbers are misprints "
+         "or differ, each explained, and 6 aims of the package's own are not met."),
+        (13, 0, 1, "13 claims were checked: 12 agree; 1 aim of the package's own is not met."),
+        (9, 0, 0, "9 claims were checked, and all agree."),
+        (0, 0, 0, "Nothing here was checked."),
     ],
 )  # fmt: skip
-def test_the_verdict_reads_as_a_result(count, differ, said):
-    assert verdict(count, differ) == said
+def test_the_verdict_reads_as_a_result(count, differ, missed, said):
+    assert verdict(count, differ, missed) == said
+
+
+def test_aims_of_our_own_are_counted_apart():
+    def claim(id, thesis, holds):
+        return {**HOSTILE, "id": id, "thesis": thesis, "computed": "x", "holds": holds}
+
+    claims = [
+        claim("theirs", "grows", False), claim("ours", "not said", False),
+        claim("also", "not said", True), claim("right", "grows", True),
+    ]  # fmt: skip
+    chapter = ChapterPage("ch9", "Nine", [Section("x", "X", "says", "ours", None, claims)])
+    said = (
+        "4 claims were checked: 2 agree; 1 of the thesis's numbers is a misprint or differs, as "
+        "explained, and 1 aim of the package's own is not met."
+    )
+    page, index = chapter_page(chapter), index_page([chapter], [])
+    assert said in page
+    assert said in index
+    assert "2 of 4 claims agree; 1 misprinted or different, 1 aim not met" in page
+    assert page.count("≠ differs") == page.count("not met</td>") == 1
+    assert "".join(f'<td class="n">{n}</td>' for n in (4, 2, 1, 1)) in index
+    assert "<b>1</b>misprint or difference, explained" in index
+    assert "<b>1</b>aim not met" in index
 
 
 def test_tables_can_be_downloaded(tmp_path):

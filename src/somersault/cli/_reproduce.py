@@ -29,5 +29,6 @@ def run(chosen: argparse.Namespace) -> None:
     from somersault.thesis import reproduce, verdict
 
     claims = reproduce(chosen.ids, chosen.out)
-    differ = sum(not claim.holds for claim in claims)
-    print(f"{verdict(len(claims), differ)} See {chosen.out / 'index.html'}")
+    missed = sum(claim.own for claim in claims if not claim.holds)
+    differ = sum(not claim.holds for claim in claims) - missed
+    print(f"{verdict(len(claims), differ, missed)} See {chosen.out / 'index.html'}")

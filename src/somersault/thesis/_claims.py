@@ -46,6 +46,11 @@ class Claim:
     holds: bool
     note: str = ""
 
+    @property
+    def own(self) -> bool:
+        """Whether the thesis says nothing of it: an aim of the package's own."""
+        return is_own(self.thesis)
+
     def record(self) -> dict[str, Any]:
         """The claim as claims.json has it.
 
@@ -54,6 +59,11 @@ class Claim:
         dict
         """
         return asdict(self)
+
+
+def is_own(thesis: float | str) -> bool:
+    """Whether what stands for the thesis's side of a claim means that it says nothing."""
+    return thesis in ("not said", "not tried", "(not in the thesis)")
 
 
 def number(

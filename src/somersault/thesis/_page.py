@@ -8,6 +8,7 @@ from functools import cache
 from html import escape
 from importlib.resources import files
 
+from somersault.thesis._claims import is_own
 from somersault.thesis._motion import Written
 from somersault.thesis._page_tables import COLUMNS, Record, claim_row, claims_table, printed, table
 from somersault.view import style as look
@@ -59,16 +60,18 @@ def index_page(chapters: Sequence[ChapterPage], errata: Iterable[Sequence[str]])
     """The overview: how many claims agree, chapter by chapter, what moves, what differs, and all
     claims, to be searched."""
     claims = [claim for chapter in chapters for claim in chapter.claims]
-    differ = sum(not claim["holds"] for claim in claims)
+    differ, missed = _failed(claims)
     sections = [section for chapter in chapters for section in chapter.sections]
     pictures = sum(section.picture is not None for section in sections)
     motions = sum(section.motion is not None for section in sections)
     header = f"""<p class="text">Figures, tables and statements of R. R. Playter, {_BOOK} (1994),
 computed anew from the shipped models. Each claim compares what the thesis says with what the
-computation gives, and whether the two agree is computed. {verdict(len(claims), differ)}</p>
+computation gives, and whether the two agree is computed. Where the thesis says nothing, a claim is
+an aim of our own. {verdict(len(claims), differ, missed)}</p>
 <ul class="counts">
-<li class="yes"><b>{len(claims) - differ}</b>agree</li>
+<li class="yes"><b>{len(claims) - differ - missed}</b>agree</li>
 <li class="no"><b>{differ}</b>{_misprints(differ)}, explained</li>
+<li class="no"><b>{missed}</b>{_aims(missed)} not met</li>
 <li><b>{pictures}</b>{"picture" if pictures == 1 else "pictures"}</li>
 <li><b>{motions}</b>{"motion" if motions == 1 else "motions"}</li>
 </ul>"""
@@ -85,7 +88,7 @@ computation gives, and whether the two agree is computed. {verdict(len(claims), 
         f"""<h2 id="chapters">Chapters</h2>
 {_overview(chapters)}
 {moving}
-<h2 id="differences">Misprints and differences</h2>
+<h2 id="differences">Misprints, differences, and aims not met</h2>
 {claims_table(apart) if apart else "<p>Every claim agrees.</p>"}
 <h2 id="errata">Errata of the thesis</h2>
 <p class="text">Errors of the printed text, each shown by an independent calculation. The corrected
@@ -102,18 +105,17 @@ form is the one used here.</p>
 def chapter_page(chapter: ChapterPage) -> str:
     """One chapter's figures and tables, with their claims."""
     links = [("index.html", "overview"), *((f"#{s.id}", s.id) for s in chapter.sections)]
-    differ = sum(not claim["holds"] for claim in chapter.claims)
     count = len(chapter.claims)
     return _page(
         chapter.name,
         f'<p class="text">Chapter {escape(chapter.id.removeprefix("ch"))} of R. R. Playter, '
-        f"{_BOOK} (1994). {verdict(count, differ)}</p>",
+        f"{_BOOK} (1994). {verdict(count, *_failed(chapter.claims))}</p>",
         links,
         "".join(_section(section) for section in chapter.sections),
     )
 
 
-def verdict(count: int, differ: int) -> str:
+def verdict(count: int, differ: int, missed: int = 0) -> str:
     """How many claims agree, in a sentence.
 
     Parameters
@@ -121,7 +123,9 @@ def verdict(count: int, differ: int) -> str:
     count : int
         Claims that were checked.
     differ : int
-        Those that do not hold.
+        Those of the thesis that do not hold.
+    missed : int
+        Those of our own, where the thesis says nothing, that do not hold.
 
     Returns
     -------
@@ -135,13 +139,23 @@ def verdict(count: int, differ: int) -> str:
     """
     if not count:
         return "Nothing here was checked."
-    if not differ:
+    if not differ and not missed:
         return f"{count} claims were checked, and all agree."
-    those = "is a misprint or differs, as" if differ == 1 else "are misprints or differ, each"
-    return (
-        f"{count} claims were checked: {count - differ} agree; {differ} of the thesis's numbers "
-        f"{those} explained."
-    )
+    parts = []
+    if differ:
+        those = "is a misprint or differs, as" if differ == 1 else "are misprints or differ, each"
+        parts.append(f"{differ} of the thesis's numbers {those} explained")
+    if missed:
+        verb = "is" if missed == 1 else "are"
+        parts.append(f"{missed} {_aims(missed)} of the package's own {verb} not met")
+    agree = count - differ - missed
+    return f"{count} claims were checked: {agree} agree; {', and '.join(parts)}."
+
+
+def _failed(claims: Iterable[Record]) -> tuple[int, int]:
+    """How many claims of the thesis do not hold, and how many of our own."""
+    own = [is_own(claim["thesis"]) for claim in claims if not claim["holds"]]
+    return len(own) - sum(own), sum(own)
 
 
 def _page(
@@ -186,19 +200,21 @@ def _overview(chapters: Sequence[ChapterPage]) -> str:
     """One row for each chapter: what was checked, what agrees, and its sections."""
     rows = []
     for chapter in chapters:
-        agree = sum(bool(claim["holds"]) for claim in chapter.claims)
+        count = len(chapter.claims)
+        differ, missed = _failed(chapter.claims)
         parts = ", ".join(
             f'<a href="{escape(chapter.id)}.html#{escape(s.id)}">{escape(s.id)}</a>'
             for s in chapter.sections
         )
         rows.append(
             f'<tr><td><a href="{escape(chapter.id)}.html">{escape(chapter.name)}</a></td>'
-            f'<td class="n">{len(chapter.claims)}</td><td class="n">{agree}</td>'
-            f'<td class="n">{len(chapter.claims) - agree}</td><td>{parts}</td></tr>'
+            f'<td class="n">{count}</td><td class="n">{count - differ - missed}</td>'
+            f'<td class="n">{differ}</td><td class="n">{missed}</td><td>{parts}</td></tr>'
         )
     return (
         '<div class="scroll"><table class="overview"><thead><tr><th>chapter</th>'
         '<th class="n">claims</th><th class="n">agree</th><th class="n">differ</th>'
+        '<th class="n">aims not met</th>'
         "<th>figures, tables, sections</th></tr></thead>"
         f"<tbody>{''.join(rows)}</tbody></table></div>"
     )
@@ -276,12 +292,12 @@ def _section(section: Section) -> str:
     if section.data is not None:
         parts.append(f'<p class="files"><a href="{escape(section.data)}">The table as CSV</a></p>')
     if section.claims:
-        agree = sum(bool(claim["holds"]) for claim in section.claims)
         count = len(section.claims)
-        opened = "" if agree == count and count > 12 else " open"
+        differ, missed = _failed(section.claims)
+        opened = "" if not differ + missed and count > 12 else " open"
         rows = "".join(claim_row(claim, True) for claim in section.claims)
         parts.append(
-            f"<details{opened}><summary>{_agreement(count, agree)}</summary>"
+            f"<details{opened}><summary>{_agreement(count, differ, missed)}</summary>"
             f"{claims_table(f'<tbody>{rows}</tbody>')}</details>"
         )
     return "".join(parts) + "</section>\n"
@@ -317,9 +333,15 @@ def _misprints(count: int) -> str:
     return "misprint or difference" if count == 1 else "misprints or differences"
 
 
-def _agreement(count: int, agree: int) -> str:
+def _aims(count: int) -> str:
+    return "aim" if count == 1 else "aims"
+
+
+def _agreement(count: int, differ: int, missed: int) -> str:
+    if not differ and not missed:
+        return "1 claim agrees" if count == 1 else f"All {count} claims agree"
     if count == 1:
-        return "1 claim agrees" if agree else "1 claim, which differs"
-    if agree == count:
-        return f"All {count} claims agree"
-    return f"{agree} of {count} claims agree; {count - agree} misprinted or different"
+        return "1 claim, which differs" if differ else "1 aim, which is not met"
+    parts = [f"{differ} misprinted or different"] if differ else []
+    parts += [f"{missed} {_aims(missed)} not met"] if missed else []
+    return f"{count - differ - missed} of {count} claims agree; {', '.join(parts)}"

@@ -7,6 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from typing import Any
 
+from somersault.thesis._claims import is_own
+
 Record = Mapping[str, Any]
 COLUMNS = ("", "where", "claim", "thesis", "computed", "id")
 _POWER = re.compile(r"(?<![\w.])([-−]?\d+(?:\.\d+)?)e([+-]\d+)(?!\w)")
@@ -50,7 +52,8 @@ def claims_table(bodies: str, id: str = "") -> str:
 
 def claim_row(claim: Record, notes: bool, link: str = "") -> str:
     """A row; its ID is a link, or where a link leads."""
-    mark = '<td class="yes">✓ agrees</td>' if claim["holds"] else '<td class="no">≠ differs</td>'
+    differs = "not met" if is_own(claim["thesis"]) else "≠ differs"
+    mark = '<td class="yes">✓ agrees</td>' if claim["holds"] else f'<td class="no">{differs}</td>'
     words = printed(str(claim["claim"]))
     if notes and claim["note"]:
         words += f'<br><span class="note">{printed(str(claim["note"]))}</span>'
