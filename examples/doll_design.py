@@ -72,3 +72,5 @@ if __name__ == "__main__":
         main(*sys.argv[1:4])
     except so.SomersaultError as mistake:
         sys.exit(f"{sys.argv[0]}: {mistake}")
+    except KeyboardInterrupt:
+        sys.exit("stopped; the same call goes on from here")

@@ -35,6 +35,7 @@ REACH = {  # how far each number of the motion may go from where it begins, s an
     "back_side": 0.2, "out_time": 0.075, "back_time": 0.065, "back_pike": 0.26, "torso": 0.24,
 }  # fmt: skip
 FREQUENCIES, RATIOS = (8.0, 80.0), (0.3, 2.0)  # rad/s and 1: within what they are chosen
+ANGLES = {"pike", "side", "back_side", "back_pike", "torso"}  # the others are times
 LEAST = {"swing": 0.005, "wrap": 0.005, "stay": 0.005}
 MOST = {"back_side": 0.5, "torso": 0.6}  # either way: joints have limits
 SCATTER = {
@@ -70,7 +71,8 @@ def moves() -> dict[str, so.Choose]:
         begin = inspect.signature(so.rudi).parameters[name].default
         most = MOST.get(name, np.inf)
         low = max(begin - reach, LEAST.get(name, -most))
-        chosen[name] = so.Choose(between=(low, min(begin + reach, most)), start=begin)
+        unit = "rad" if name in ANGLES else "s"
+        chosen[name] = so.Choose(between=(low, min(begin + reach, most)), start=begin, unit=unit)
     return chosen
 
 
@@ -127,3 +129,5 @@ if __name__ == "__main__":
         main(*sys.argv[1:3])
     except so.SomersaultError as mistake:
         sys.exit(str(mistake))
+    except KeyboardInterrupt:
+        sys.exit("stopped; the same call goes on from here")

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from somersault.designs._choose import Choose
 
 _COLUMNS = 3
+_SHORT = 5.0  # times as much at its end: too few of 1, 2, 5, 10, … lie along such an axis
 
 
 def plot(
@@ -53,6 +54,8 @@ def plot(
             if chosen[name].scale == "log":
                 ax.set_xscale("log")
                 _spell_out(ax.xaxis)
+            else:
+                ax.locator_params("x", nbins=4)
         for ax in axes[: 1 + len(names)]:
             ax.axhspan(*interval, color=look.ORANGE, alpha=0.25, lw=0)
             ax.axhline(figure, color=look.ORANGE, lw=1)
@@ -85,10 +88,14 @@ def plot_map(data: xr.Dataset, chosen: Mapping[str, Choose], best: Mapping[str, 
 
 
 def _spell_out(axis: Any) -> None:
-    """Numbers along a logarithmic axis as people write them."""
-    from matplotlib.ticker import LogLocator, NullFormatter
+    """Numbers along a logarithmic axis as people write them, and few along a short one."""
+    from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
-    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    low, high = axis.get_view_interval()
+    short = high < _SHORT * low
+    axis.set_major_locator(
+        MaxNLocator(4, steps=(1, 2, 5, 10)) if short else LogLocator(subs=(1.0, 2.0, 5.0))
+    )
     axis.set_major_formatter("{x:g}")
     axis.set_minor_formatter(NullFormatter())
 
