@@ -5,10 +5,11 @@ twists (so.rudi) of an athlete is to land from starts that are off by up to 0.1 
 twist, with no torque at any joint beyond what he has, also while his joints give way. Chosen are
 twenty numbers of the motion and the natural frequencies of seven groups of joints, and with
 "damped", about the motion that was found, once more these with damping ratios, which are 0.7
-otherwise. Every candidate has the motor tape of its own motion. Takes some three minutes on two
-cores; what is found is kept in the folder rudi_design (rudi_design_damped), and the same call goes
-on where it was stopped. Writes there design.png, rudi.json with what was chosen, and rudi.toml,
-which `somersault fly` takes.
+otherwise. Every candidate has the motor tape of its own motion. The search begins at so.rudi as it
+is, which earlier searches found, and refines that. Takes some three minutes on two cores; what is
+found is kept in the folder rudi_design (rudi_design_damped), and the same call goes on where it was
+stopped. Writes there design.png, rudi.json with what was chosen, and rudi.toml, which `somersault
+fly` takes.
 """
 
 import inspect
@@ -28,7 +29,9 @@ GROUPS = {  # rad/s, where the search begins: what serves a similar motion
     "shoulder_abduction": 19.0, "shoulder_rotation": 26.0, "shoulder_flexion": 52.0,
     "elbow": 23.0, "hip_flexion": 43.0, "hip_abduction": 17.5, "torso": 13.5,
 }  # fmt: skip
-REACH = {  # how far each number of the motion may go from where it begins, s and rad
+# How far each number of the motion may go from where it begins, s and rad. "centre" has no
+# influence so near: the legs take no less than 0.12 s to come back under the body.
+REACH = {
     "duration": 0.07, "pike": 0.24, "side": 0.085, "swing": 0.04, "swing_time": 0.055,
     "extend": 0.06, "extend_time": 0.07, "centre": 0.12, "wrap": 0.1, "wrap_time": 0.055,
     "early": 0.04, "stay": 0.08, "open_time": 0.055, "late": 0.04, "back": 0.1,
