@@ -64,19 +64,19 @@ def _damping(group: str) -> Choose:
 
 CASES = {
     "one": Case("one ω_n, ζ = 0.7", {"ω_n": _frequency("")}, 36),
-    "four": Case("ω_n of four groups, ζ = 0.7", {f"ω_n {g}": _frequency(g) for g in _FOUR}, 72),
+    "four": Case("ω_n of four groups, ζ = 0.7", {f"ω_n_{g}": _frequency(g) for g in _FOUR}, 72),
     "damped": Case("one ω_n, one ζ", {"ω_n": _frequency(""), "ζ": _damping("")}, 60),
     "seven": Case(
         "ω_n and ζ of seven groups",
-        {f"ω_n {g}": _frequency(g) for g in _SEVEN} | {f"ζ {g}": _damping(g) for g in _SEVEN},
+        {f"ω_n_{g}": _frequency(g) for g in _SEVEN} | {f"ζ_{g}": _damping(g) for g in _SEVEN},
         120,
     ),
     "joints": Case(
-        "ω_n of each joint, ζ = 0.7", {f"ω_n {j}": _frequency(j) for j in _JOINTS}, 120, "four"
+        "ω_n of each joint, ζ = 0.7", {f"ω_n_{j}": _frequency(j) for j in _JOINTS}, 120, "four"
     ),
     "joints damped": Case(
         "ω_n and ζ of each joint",
-        {f"ω_n {j}": _frequency(j) for j in _JOINTS} | {f"ζ {j}": _damping(j) for j in _JOINTS},
+        {f"ω_n_{j}": _frequency(j) for j in _JOINTS} | {f"ζ_{j}": _damping(j) for j in _JOINTS},
         120,
         "seven",
     ),
@@ -115,10 +115,11 @@ def chosen(case: str, kept: rudi.Kept = "rudi") -> Design:
 
 
 def _of_its_group(name: str, best: Mapping[str, float]) -> float:
-    """What "ω_n left_elbow" is in a design that has "ω_n elbow"."""
-    what, joint = name.split(" ")
-    groups = [key for key in best if key.startswith(f"{what} ")]
-    return next(best[key] for key in groups if key.split(" ")[1] in joint)
+    """What "ω_n_left_elbow" is in a design that has "ω_n_elbow"."""
+    what = "ζ_" if name.startswith("ζ_") else "ω_n_"
+    joint = name.removeprefix(what)
+    groups = [key for key in best if key.startswith(what)]
+    return next(best[key] for key in groups if key.removeprefix(what) in joint)
 
 
 def unperturbed(found: Design, kept: rudi.Kept, factor: float) -> dict[str, float]:
@@ -329,7 +330,7 @@ def _draw(every: Mapping[str, Design]) -> Figure:
     left.legend(fontsize=8, frameon=False, loc="lower right")
     around = every["seven"].on(size=_HELD_OUT // 8).around(steps=7, reach=0.15)
     for name, color in zip(_SEVEN, colors, strict=True):
-        row = around.sel(quantity=f"ω_n {name}")
+        row = around.sel(quantity=f"ω_n_{name}")
         right.plot(
             _FREQUENCY * row["value"],
             row["figure"],
