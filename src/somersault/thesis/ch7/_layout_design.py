@@ -12,11 +12,12 @@ import numpy as np
 from somersault._core.array import Array
 from somersault.designs import Choose, Design, Mean, design
 from somersault.ensembles import Vary
-from somersault.flight import JointTakeoff, Takeoff, flights
+from somersault.flight import JointTakeoff, Maneuver, Takeoff, flights
 from somersault.model import Body, Joint, Model, as_matrix, as_vector, load
 from somersault.stability import spin, spins
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis._entries import Result, Table
+from somersault.thesis._motion import Motion
 from somersault.thesis.ch5._doll import BEST, STRAIGHT, WEIGHTED
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ _SCATTER = 0.06  # rad, standard deviation of tilt and twist: a seventeenth of a
 _STARTS, _HELD_OUT, _EVALUATIONS = 256, 2_048, 240
 _SPINS = 2_048
 _A_LITTLE = 0.1  # rad, and of K_sh: how far off arms and springs are of which margins are means
+_OFF = 0.09, 0.065  # rad of tilt and twist in the films
 _FURRER, _DOLL = 8.64, 20.0  # rad/s; lives in somersaults do not depend on it
 _ARMS = Choose(between=(0.6, 1.9), sets="joints.shoulder.angle", start=1.3, unit="rad")
 
@@ -193,6 +195,9 @@ def layout_design() -> Result:
             "layout": (arms, _FURRER),
             **{f"with {part}": (found, _FURRER) for part, found in more.items()},
         }),
+        _motion("furrer", _FURRER, {
+            "1.3 rad, K = 1.2": (1.3, 1.2), "chosen": (best["arms"], best["K_sh"]),
+        }),
     )  # fmt: skip
 
 
@@ -236,7 +241,22 @@ def doll_design() -> Result:
         f"with the arms' mass chosen too, judged on {_HELD_OUT:,} other starts.", claims,
         _drawn(weighted),
         _table({"spring": (spring, _DOLL), "spring and weight": (weighted, _DOLL)}),
+        _motion(WEIGHTED, _DOLL, {
+            f"K = {K:.2f}": (STRAIGHT, K) for K in (BEST, spring.best["K_sh"])
+        }, 0.4),
     )  # fmt: skip
+
+
+def _motion(
+    model: str, rate: float, arms: Mapping[str, tuple[float, float]], speed: float = 1.0
+) -> Motion:
+    """Flights from one start that is off, with arms at an angle (rad) on springs K."""
+    flown = {}
+    for name, (angle, K) in arms.items():
+        joints = {"shoulder": JointTakeoff.sprung(angle=angle, K=K, hold=True)}
+        takeoff = Takeoff(spin=rate, tilt=_OFF[0], twist=_OFF[1], joints=joints)
+        flown[name] = Maneuver(load(model), takeoff, _MANY * 2 * np.pi / rate, samples=601).fly()
+    return Motion(flown, speed)
 
 
 def _table(every: Mapping[str, tuple[Design, float]]) -> Table:
