@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -287,3 +289,22 @@ def test_an_unknown_table_is_told_what_an_ensemble_takes(
     file = spec(tmp_path, vary='[vry.K]\nsets = "joints.shoulder.stiffness"\nvalues = [20.0]\n')
     said = refused(capsys, file, "vry is no key", "vary, sample, report, target", "takeoff")
     assert "samples" not in said
+
+
+def test_a_scheduler_that_is_not_there_leaves_dask_as_it_was() -> None:
+    """Where nothing has used dask before: its settings are looked at in a program of its own."""
+    program = (
+        "import somersault as so\n"
+        "for _ in range(2):\n"
+        "    try:\n"
+        "        so.ensemble('furrer', so.Takeoff(spin=5.0), 0.1, size=1, scheduler='x://y')\n"
+        "    except so.SomersaultError as mistake:\n"
+        "        print(mistake)\n"
+        "import dask.config, distributed\n"
+        "print(dask.config.get('distributed.comm.timeouts.connect'))\n"
+    )
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    first, again, seconds = run.stdout.splitlines()
+    assert first == again
+    assert seconds

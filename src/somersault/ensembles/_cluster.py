@@ -100,6 +100,7 @@ def _begun(workers: int, open_now: ExitStack) -> Client:
 def _quiet(open_now: ExitStack) -> None:
     """dask's settings while a connection is open."""
     import dask
+    import distributed  # noqa: F401  # puts its own there first; else they would go with these
 
     settings = {
         "distributed.scheduler.allowed-failures": _DEATHS,
