@@ -104,6 +104,11 @@ def add_motion_outputs(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out", type=Path, metavar="FILE", help="write its history, .nc (NetCDF) or .csv"
     )
+    add_views(parser)
+
+
+def add_views(parser: argparse.ArgumentParser) -> None:
+    """Declare what one motion can be seen in."""
     parser.add_argument(
         "--video", type=Path, metavar="FILE", help="write a film of it, .mp4, .webm or .gif"
     )
@@ -118,6 +123,11 @@ def check_motion_outputs(chosen: argparse.Namespace) -> None:
 
     if chosen.out is not None:
         check_history_file(chosen.out)
+    check_views(chosen)
+
+
+def check_views(chosen: argparse.Namespace) -> None:
+    """SomersaultError unless a film and a page can be written, and each file apart."""
     if chosen.video is not None:
         from somersault.view import check_film
 
@@ -141,6 +151,15 @@ def write_motion(
         with writing:
             motion.save(chosen.out)
             written["history"] = str(chosen.out)
+    write_views(motion, chosen, writing, written, **film)
+    return writing, written
+
+
+def write_views(
+    motion: Flight | Run, chosen: argparse.Namespace, writing: Writing, written: dict[str, str],
+    **film: Any,
+) -> None:  # fmt: skip
+    """Write a film and a page of one motion where they are asked for, and what was `written`."""
     if chosen.video is not None:
         with writing:
             motion.film(chosen.video, **film)
@@ -149,7 +168,6 @@ def write_motion(
         with writing:
             motion.page(chosen.page)
             written["page"] = str(chosen.page)
-    return writing, written
 
 
 def written_lines(written: Mapping[str, str]) -> list[str]:

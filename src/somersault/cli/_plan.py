@@ -6,7 +6,14 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from somersault.cli._outputs import Writing, check_apart, check_distinct, written_lines
+from somersault.cli._outputs import (
+    Writing,
+    add_views,
+    check_apart,
+    check_views,
+    write_views,
+    written_lines,
+)
 
 if TYPE_CHECKING:
     from somersault.planning import Plan
@@ -39,12 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--out", type=Path, metavar="FILE.toml",
         help="write the maneuver that was found, a SPEC for somersault fly",
     )  # fmt: skip
-    parser.add_argument(
-        "--video", type=Path, metavar="FILE", help="write a film of it, .mp4, .webm or .gif"
-    )
-    parser.add_argument(
-        "--page", type=Path, metavar="FILE", help="write a page that plays it in a browser, .html"
-    )
+    add_views(parser)
     parser.add_argument(
         "--processes", type=int, metavar="N", help="searched at once (default: all cores)"
     )
@@ -65,14 +67,8 @@ def run(chosen: argparse.Namespace) -> None:
         with writing:
             found.maneuver.save(chosen.out)
             written["maneuver"] = str(chosen.out)
-    if chosen.video is not None:
-        with writing:
-            found.fly().film(chosen.video, charts=True, vectors=("momentum",))
-            written["film"] = str(chosen.video)
-    if chosen.page is not None:
-        with writing:
-            found.fly().page(chosen.page)
-            written["page"] = str(chosen.page)
+    if chosen.video is not None or chosen.page is not None:
+        write_views(found.fly(), chosen, writing, written, charts=True, vectors=("momentum",))
     print(json.dumps(record) if chosen.json else "\n".join(_page(record) + written_lines(written)))
     writing.finish()
 
@@ -82,15 +78,7 @@ def _check_outputs(chosen: argparse.Namespace) -> None:
 
     if chosen.out is not None:
         check_file(chosen.out, (".toml",))
-    if chosen.video is not None:
-        from somersault.view import check_film
-
-        check_film(chosen.video)
-    if chosen.page is not None:
-        from somersault.view import check_page
-
-        check_page(chosen.page)
-    check_distinct(chosen.out, chosen.video, chosen.page)
+    check_views(chosen)
     check_apart(chosen.spec, chosen.out, chosen.video, chosen.page)
 
 

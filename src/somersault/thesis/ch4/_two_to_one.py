@@ -8,7 +8,7 @@ from functools import cache
 from scipy import optimize
 
 from somersault import stability as st
-from somersault.thesis.ch4._furrer import HIGH, LOW, STIFFNESS
+from somersault.thesis.ch4._columns import edges
 
 _WIDE = 10.0  # in units of Ω: however far off
 _STEP = 1e-4  # of K_sh
@@ -44,16 +44,10 @@ def two_to_one(model: str, angle: float) -> TwoToOne:
 
     def off(stiffness: float) -> float:
         resonance = found(stiffness)
-        slow, fast = (
-            mode.root.imag
-            for _, mode in sorted(
-                zip(map(abs, resonance.counts), resonance.modes, strict=True),
-                key=lambda pair: -pair[0],
-            )
-        )
-        return fast - 2 * slow
+        of_fast = next(n for n in resonance.counts if abs(n) == 1)
+        return of_fast * resonance.detuning
 
-    ((low, high), *_) = st.stable_ranges(model, (STIFFNESS, LOW, HIGH), pose={"shoulder": angle})
+    low, high = edges(model, angle)
     exact = float(optimize.brentq(off, low + _OFF, high - _OFF, xtol=1e-10))
     spin = steady.linear({"shoulder": exact})
     slope = (off(exact + _STEP) - off(exact - _STEP)) / (2 * _STEP)

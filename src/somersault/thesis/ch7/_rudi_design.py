@@ -158,17 +158,7 @@ def peaks(found: Design) -> dict[str, float]:
         vary=momenta.scatter(), size=_HELD_OUT // 4, seed=found.held_out.seed, sequence="sobol",
     ).dataset  # fmt: skip
     good = ended_by(flown["ended"], "duration").values
-
-    def most(group: str) -> float:
-        rows = [
-            np.abs(flown[f"{which}_{name}_torque"].values[good])
-            for name in _JOINTS
-            if group in name
-            for which in ("least", "greatest")
-        ]
-        return float(np.max(rows))
-
-    return {group: most(group) for group in _FOUR}
+    return {group: float(momenta.strongest(flown, group)[good].max()) for group in _FOUR}
 
 
 def rudi_design() -> Result:

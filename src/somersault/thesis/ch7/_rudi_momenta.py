@@ -9,10 +9,11 @@ gentle motion at 0.9 h alone ("slow"), with ζ = 0.7.
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -23,6 +24,9 @@ from somersault.flight import Flight, Maneuver, Report, Takeoff, compliant, flig
 from somersault.model import load
 from somersault.thesis._claims import Claim, statement
 from somersault.thesis.ch6 import _rudi as rudi
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FACTORS = (1.0, 0.9, 1.1)  # of the nominal angular momentum
 GROUPS = ("shoulder", "elbow", "hip", "torso")
@@ -44,15 +48,45 @@ def scatter(span: float = rudi.SPAN) -> dict[str, Vary]:
 
 def soft(kept: rudi.Kept, gains: dict[str, float], factor: float) -> Takeoff:
     """The compliant takeoff at a momentum, of natural frequencies and damping ratios by group."""
+    takeoff = compliant(
+        rudi.MODEL, rudi.nominal_takeoff(kept), *by_joint(gains), pose=rudi.twist_rate(kept)[1]
+    )
+    return rudi.scaled(takeoff, factor)
+
+
+def by_joint(gains: Mapping[str, float]) -> tuple[dict[str, float], dict[str, float] | float]:
+    """Natural frequencies and damping ratios as `compliant` takes them, of "frequency_hip" …"""
     by: dict[str, dict[str, float]] = {"frequency": {}, "damping": {}}
     for name, value in gains.items():
         what, group = name.split("_", 1)
         by[what][f"*{group}*"] = value
-    takeoff = compliant(
-        rudi.MODEL, rudi.nominal_takeoff(kept), by["frequency"], by["damping"] or _RATIO,
-        pose=rudi.twist_rate(kept)[1],
-    )  # fmt: skip
-    return rudi.scaled(takeoff, factor)
+    return by["frequency"], by["damping"] or _RATIO
+
+
+def strongest(data: xr.Dataset, group: str) -> Array:
+    """The greatest torque of the joints of a group in each flight, N m."""
+    return np.max(
+        [
+            np.abs(data[f"{which}_{name}_torque"].values)
+            for name in rudi.joint_names()
+            if group in name
+            for which in ("least", "greatest")
+        ],
+        0,
+    )
+
+
+def mean_error(errors: Array) -> float:
+    """Of flights (N,), rad; one that broke off, NaN, counts as 1."""
+    return float(np.where(np.isnan(errors), 1.0, errors).mean())
+
+
+def percent(good: Array) -> tuple[float, float, float]:
+    """The share of flights (N,) that are good, and the interval of that, %."""
+    import xarray as xr
+
+    share = fraction(xr.DataArray(good, dims="sample"))
+    return tuple(100 * float(share[n]) for n in ("fraction", "low", "high"))  # type: ignore[return-value]
 
 
 def own_landing(kept: rudi.Kept, takeoff: Takeoff) -> Flight:
@@ -76,15 +110,12 @@ class Judged:
     @property
     def share(self) -> tuple[float, float, float]:
         """The flights with a small error, and the interval of that, %."""
-        import xarray as xr
-
-        good = fraction(xr.DataArray(self.errors < rudi.SMALL, dims="sample"))
-        return tuple(100 * float(good[n]) for n in ("fraction", "low", "high"))  # type: ignore[return-value]
+        return percent(self.errors < rudi.SMALL)
 
     @property
     def mean(self) -> float:
         """The mean error, rad; a flight that broke off counts as 1."""
-        return float(np.where(np.isnan(self.errors), 1.0, self.errors).mean())
+        return mean_error(self.errors)
 
 
 @cache
@@ -106,15 +137,7 @@ def judged(kept: rudi.Kept, case: Case, factor: float) -> Judged:
     )  # fmt: skip
     flown = ensemble(runs, vary=scatter(), size=_SIZE, seed=_SEED, sequence="sobol").dataset
     good = ended_by(flown["ended"], "duration").values
-    torques = {
-        group: max(
-            float(np.abs(flown[f"{which}_{name}_torque"].values[good]).max())
-            for name in names
-            if group in name
-            for which in ("least", "greatest")
-        )
-        for group in GROUPS
-    }
+    torques = {group: float(strongest(flown, group)[good].max()) for group in GROUPS}
     return Judged(np.where(good, flown["landing_error"].values, np.nan), torques)
 
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from somersault._core.array import Array
-from somersault.ensembles import Vary, ended_by, ensemble, fraction
+from somersault.ensembles import Vary, ended_by, ensemble
 from somersault.flight import Flight, Maneuver, Report, flights, rudi
 from somersault.model import named_pose
 from somersault.thesis._claims import Claim, statement
@@ -32,7 +32,6 @@ _WHERE = "§6.3.3, 7.5"
 _POINTS = 21  # a side: the starts of figure 6-3
 _SIZE, _SEED = 1_024, 2
 _STEPS = 3_000
-_RATIO = 0.7
 _CORNER = -0.1  # rad of tilt and twist, the start of figures 6-4 and 6-5
 _ENOUGH = 90.0  # % of the starts
 _CLOSE = 0.03  # rad
@@ -77,12 +76,8 @@ def soft(case: Case) -> Maneuver:
     if case == "gentle":
         takeoff = momenta.soft("rudi_gentle", momenta.found("rudi_gentle", "fixed"), 1.0)
         return Maneuver(nominal("fixed").model, takeoff, kept.landing_time("rudi_gentle"))
-    by: dict[str, dict[str, float]] = {"frequency": {}, "damping": {}}
-    for name, value in numbers(case).items():
-        if _is_gain(name):
-            what, group = name.split("_", 1)
-            by[what][f"*{group}*"] = value
-    return nominal(case).compliant(by["frequency"], by["damping"] or _RATIO, pose="wrap")
+    gains = {name: x for name, x in numbers(case).items() if _is_gain(name)}
+    return nominal(case).compliant(*momenta.by_joint(gains), pose="wrap")
 
 
 @cache
@@ -119,7 +114,7 @@ class Flown:
     @property
     def mean(self) -> float:
         """The mean error, rad; a flight that broke off counts as 1."""
-        return float(np.where(np.isnan(self.errors), 1.0, self.errors).mean())
+        return momenta.mean_error(self.errors)
 
 
 @cache
@@ -146,13 +141,7 @@ def flown(case: Case, over: Literal["figure", "others"]) -> Flown:
     good = ended_by(data["ended"], "duration").values.ravel()
 
     def strain(group: str) -> Array:
-        rows = [
-            np.abs(data[f"{which}_{name}_torque"].values.ravel())
-            for name in names
-            if group in name
-            for which in ("least", "greatest")
-        ]
-        return np.where(good, np.max(rows, 0) / bounds()[group], np.inf)
+        return np.where(good, momenta.strongest(data, group).ravel() / bounds()[group], np.inf)
 
     errors = np.where(good, data["landing_error"].values.ravel(), np.nan)
     return Flown(errors, {group: strain(group) for group in bounds()})
@@ -217,7 +206,7 @@ def _of_the_motion() -> tuple[Claim, ...]:
 
 def _of_the_starts(figure: dict[Case, Flown], others: dict[Case, Flown]) -> tuple[Claim, ...]:
     fixed, damped, gentle = others["fixed"], others["damped"], figure["gentle"]
-    drawn = _interval(fixed.small & fixed.able)
+    drawn = momenta.percent(fixed.small & fixed.able)
     return (
         statement(
             "together.figure", _WHERE, "of the starts of figure 6-3 nine in ten land with e < 0.1 "
@@ -258,13 +247,6 @@ def _of_the_starts(figure: dict[Case, Flown], others: dict[Case, Flown]) -> tupl
             "theirs.",
         ),
     )  # fmt: skip
-
-
-def _interval(good: Array) -> tuple[float, float, float]:
-    import xarray as xr
-
-    share = fraction(xr.DataArray(good, dims="sample"))
-    return tuple(100 * float(share[n]) for n in ("fraction", "low", "high"))  # type: ignore[return-value]
 
 
 def _percent(good: Array) -> float:
